@@ -1,0 +1,1 @@
+"""Wind to loads on blades and tower."""

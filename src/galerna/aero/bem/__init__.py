@@ -1,0 +1,1 @@
+"""Blade-element momentum theory and its corrections."""

@@ -1,0 +1,1 @@
+"""Undisturbed wind at any point and time."""
