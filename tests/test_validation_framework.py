@@ -1,0 +1,44 @@
+"""The judge itself: differences, verdicts, selection."""
+
+import math
+
+import pytest
+
+from galerna.errors import InputError
+from validation.framework import Case, Check, as_records, page, run_case, select
+
+
+def check(value, tolerance=0.1, relative=True):
+    return Check("x", value, 2.0, "arithmetic", tolerance=tolerance, relative=relative)
+
+
+def test_a_relative_difference_is_a_fraction_of_the_reference():
+    assert check(2.1).difference == pytest.approx(0.05)
+    assert check(2.1, relative=False).difference == pytest.approx(0.1)
+
+
+def test_verdicts():
+    assert check(2.19).passed is True
+    assert check(2.21).passed is False
+    assert check(math.nan).passed is False
+    assert check(5.0, tolerance=None).passed is None
+
+
+def test_an_error_in_a_case_is_a_failed_outcome_with_its_text():
+    def broken():
+        raise ValueError("no such polar")
+
+    outcome = run_case(Case("broken", "rotor", "Broken", broken, 1))
+    assert outcome.failed
+    assert "no such polar" in outcome.error
+    assert as_records([outcome])[0]["passed"] is False
+    assert "no such polar" in page([outcome])
+
+
+def test_selection_by_group_or_name_and_a_misspelt_one_is_answered():
+    cases = [Case(n, g, n, list, 1) for n, g in [("a-b", "rotor"), ("c-d", "vortex")]]
+    assert [c.name for c in select(cases, ["vortex"])] == ["c-d"]
+    assert [c.name for c in select(cases, ["a-b"])] == ["a-b"]
+    assert len(select(cases, [])) == 2
+    with pytest.raises(InputError, match="rotor"):
+        select(cases, ["rotr"])

@@ -1,0 +1,15 @@
+"""Validation cases; ``galerna validate`` runs them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from importlib import import_module
+
+from .framework import Case
+
+MODULES = ()
+
+
+def cases() -> Sequence[Case]:
+    """Every case, in the order of the documentation."""
+    return [case for name in MODULES for case in import_module(f".{name}", __name__).CASES]
