@@ -1,0 +1,162 @@
+"""A turbulence box: a block of wind that the mean wind carries past the machine."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galerna.contract import Array
+from galerna.errors import InputError
+
+Block = NDArray[np.float32]
+
+
+@dataclass(frozen=True, eq=False)
+class Box:
+    """Wind velocity on a regular grid, moved by Taylor's hypothesis.
+
+    ``data`` (3,nx,ny,nz) float32 m/s holds u, v, w along the axes of the wind:
+    downwind, to the left looking downwind, up. Plane ``i`` of the nx passes the
+    tower axis at the time ``i dx / mean_speed``, so the planes stand in the order
+    of their arrival, *against* the downwind axis; y rises to the left, z upwards.
+    ``spacing`` (dx, dy, dz) m. The grid is centred on the tower axis in y and
+    starts at the height ``bottom`` m; ``None`` centres it on ``hub_height``.
+
+    ``periodic`` boxes repeat along x for ever. One that is not starts with the
+    plane ``lead`` m behind the first, so that points downwind of the tower find
+    wind at time 0. With ``holds_mean`` the data are the whole wind, else they
+    are fluctuations about a mean given elsewhere. ``tower`` (3,nx,nt) float32 m/s
+    continues the grid's middle below ``bottom``, one row every dz, downwards.
+    Raises InputError if a figure or a shape makes no sense.
+    """
+
+    data: Block
+    spacing: tuple[float, float, float]
+    mean_speed: float
+    hub_height: float
+    bottom: float | None = None
+    periodic: bool = True
+    lead: float = 0.0
+    holds_mean: bool = False
+    tower: Block | None = None
+    source: str = "turbulence box"
+
+    def __post_init__(self) -> None:
+        self._check_numbers()
+        self._check_blocks()
+        if self.bottom is None:
+            object.__setattr__(self, "bottom", self.hub_height - 0.5 * self.height)
+
+    def _check_numbers(self) -> None:
+        for name, value in (
+            *zip(("dx", "dy", "dz"), self.spacing, strict=True),
+            ("mean speed", self.mean_speed),
+        ):
+            if not (math.isfinite(value) and value > 0.0):
+                raise InputError(self.source, f"{name} is {value:g}, expected a positive number")
+        for name, value in (
+            ("hub height", self.hub_height),
+            ("lead", self.lead),
+            ("bottom", self.bottom or 0.0),
+        ):
+            if not math.isfinite(value):
+                raise InputError(self.source, f"{name} is {value:g}, expected a finite number")
+
+    def _check_blocks(self) -> None:
+        if self.data.ndim != 4 or self.data.shape[0] != 3 or min(self.data.shape[1:]) < 2:
+            raise InputError(
+                self.source,
+                f"velocities have shape {self.data.shape}, expected (3, nx, ny, nz) "
+                "with at least 2 points each way",
+            )
+        if self.tower is not None and self.tower.shape[:2] != self.data.shape[:2]:
+            raise InputError(
+                self.source,
+                f"tower rows have shape {self.tower.shape}, expected (3, {self.data.shape[1]}, n)",
+            )
+        for name in ("data", "tower"):
+            block = getattr(self, name)
+            if block is None:
+                continue
+            block = np.ascontiguousarray(block, dtype=np.float32)
+            if not math.isfinite(float(block.sum(dtype=np.float64))):
+                raise InputError(self.source, "holds velocities that are not finite numbers")
+            object.__setattr__(self, name, block)
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Number of points (nx, ny, nz)."""
+        nx, ny, nz = self.data.shape[1:]
+        return nx, ny, nz
+
+    @property
+    def length(self) -> float:
+        """Length m of wind that passes before the box repeats or ends."""
+        nx = self.shape[0]
+        return (nx if self.periodic else nx - 1) * self.spacing[0]
+
+    @property
+    def width(self) -> float:
+        """Distance m between the outermost points in y."""
+        return (self.shape[1] - 1) * self.spacing[1]
+
+    @property
+    def height(self) -> float:
+        """Distance m between the lowest and the highest point of the grid."""
+        return (self.shape[2] - 1) * self.spacing[2]
+
+    @property
+    def time_step(self) -> float:
+        """Time s from one plane to the next."""
+        return self.spacing[0] / self.mean_speed
+
+    @property
+    def time(self) -> Array:
+        """Times (nx,) s at which the planes pass the tower axis."""
+        return np.arange(self.shape[0]) * self.time_step - self.lead / self.mean_speed
+
+    @property
+    def y(self) -> Array:
+        """Lateral positions (ny,) m, to the left looking downwind."""
+        return np.arange(self.shape[1]) * self.spacing[1] - 0.5 * self.width
+
+    @property
+    def z(self) -> Array:
+        """Heights (nz,) m above the ground or still water."""
+        assert self.bottom is not None
+        return np.arange(self.shape[2]) * self.spacing[2] + self.bottom
+
+    @property
+    def lowest(self) -> float:
+        """Lowest height m at which the box has wind: its bottom, or its last tower row."""
+        assert self.bottom is not None
+        rows = 0 if self.tower is None else self.tower.shape[2]
+        return self.bottom - rows * self.spacing[2]
+
+    def moved(self, bottom: float) -> Box:
+        """The same box with its lowest row at the height ``bottom`` m."""
+        return replace(self, bottom=bottom)
+
+    def scaled(self, factor: float) -> Box:
+        """The same fluctuations times ``factor``; InputError if the box holds the mean wind."""
+        if self.holds_mean:
+            raise InputError(
+                self.source,
+                "holds the mean wind too and cannot be scaled",
+                "take the fluctuations first: box.fluctuations()",
+            )
+        return replace(self, data=self.data * np.float32(factor))
+
+    def fluctuations(self) -> Box:
+        """The box without the mean over time of each component at each point."""
+        if not self.holds_mean:
+            return self
+        tower = None if self.tower is None else _without_mean(self.tower)
+        return replace(self, data=_without_mean(self.data), tower=tower, holds_mean=False)
+
+
+def _without_mean(block: Block) -> Block:
+    return block - block.mean(axis=1, keepdims=True, dtype=np.float64).astype(np.float32)
