@@ -1,0 +1,1 @@
+"""Sources of the documentation; ``python -m docs.build`` makes what is generated."""
