@@ -20,16 +20,16 @@ class Box:
 
     ``data`` (3,nx,ny,nz) float32 m/s holds u, v, w along the axes of the wind:
     downwind, to the left looking downwind, up. Plane ``i`` of the nx passes the
-    tower axis at the time ``i dx / mean_speed``, so the planes stand in the order
-    of their arrival, *against* the downwind axis; y rises to the left, z upwards.
-    ``spacing`` (dx, dy, dz) m. The grid is centred on the tower axis in y and
-    starts at the height ``bottom`` m; ``None`` centres it on ``hub_height``.
+    tower axis at the time ``(i dx - lead) / mean_speed``: the planes stand in the
+    order of their arrival, *against* the downwind axis. y rises to the left, z
+    upwards. ``spacing`` (dx, dy, dz) m. The grid's centre stands on the tower axis,
+    ``center_above_hub`` m above ``hub_height`` m.
 
-    ``periodic`` boxes repeat along x for ever. One that is not starts with the
-    plane ``lead`` m behind the first, so that points downwind of the tower find
-    wind at time 0. With ``holds_mean`` the data are the whole wind, else they
-    are fluctuations about a mean given elsewhere. ``tower`` (3,nx,nt) float32 m/s
-    continues the grid's middle below ``bottom``, one row every dz, downwards.
+    ``periodic`` boxes repeat along x for ever. One that is not needs a ``lead`` m,
+    the wind that has passed at time 0, for points downwind of the tower. With
+    ``holds_mean`` the data are the whole wind, else they are fluctuations about a
+    mean given elsewhere. ``tower`` (3,nx,nt) float32 m/s continues the grid's
+    middle down from its bottom, where its first row stands, with one row every dz.
     Raises InputError if a figure or a shape makes no sense.
     """
 
@@ -37,7 +37,7 @@ class Box:
     spacing: tuple[float, float, float]
     mean_speed: float
     hub_height: float
-    bottom: float | None = None
+    center_above_hub: float = 0.0
     periodic: bool = True
     lead: float = 0.0
     holds_mean: bool = False
@@ -47,8 +47,6 @@ class Box:
     def __post_init__(self) -> None:
         self._check_numbers()
         self._check_blocks()
-        if self.bottom is None:
-            object.__setattr__(self, "bottom", self.hub_height - 0.5 * self.height)
 
     def _check_numbers(self) -> None:
         for name, value in (
@@ -60,7 +58,7 @@ class Box:
         for name, value in (
             ("hub height", self.hub_height),
             ("lead", self.lead),
-            ("bottom", self.bottom or 0.0),
+            ("centre above hub", self.center_above_hub),
         ):
             if not math.isfinite(value):
                 raise InputError(self.source, f"{name} is {value:g}, expected a finite number")
@@ -116,29 +114,40 @@ class Box:
     @property
     def time(self) -> Array:
         """Times (nx,) s at which the planes pass the tower axis."""
-        return np.arange(self.shape[0]) * self.time_step - self.lead / self.mean_speed
+        return (
+            np.arange(self.shape[0], dtype=np.float64) * self.time_step
+            - self.lead / self.mean_speed
+        )
 
     @property
     def y(self) -> Array:
         """Lateral positions (ny,) m, to the left looking downwind."""
-        return np.arange(self.shape[1]) * self.spacing[1] - 0.5 * self.width
+        return np.arange(self.shape[1], dtype=np.float64) * self.spacing[1] - 0.5 * self.width
 
     @property
     def z(self) -> Array:
         """Heights (nz,) m above the ground or still water."""
-        assert self.bottom is not None
-        return np.arange(self.shape[2]) * self.spacing[2] + self.bottom
+        return np.arange(self.shape[2], dtype=np.float64) * self.spacing[2] + self.bottom
+
+    @property
+    def bottom(self) -> float:
+        """Height m of the lowest row of the grid."""
+        return self.hub_height + self.center_above_hub - 0.5 * self.height
+
+    @property
+    def top(self) -> float:
+        """Height m of the highest row of the grid."""
+        return self.bottom + self.height
 
     @property
     def lowest(self) -> float:
         """Lowest height m at which the box has wind: its bottom, or its last tower row."""
-        assert self.bottom is not None
-        rows = 0 if self.tower is None else self.tower.shape[2]
+        rows = 0 if self.tower is None else max(self.tower.shape[2] - 1, 0)
         return self.bottom - rows * self.spacing[2]
 
-    def moved(self, bottom: float) -> Box:
+    def standing_on(self, bottom: float) -> Box:
         """The same box with its lowest row at the height ``bottom`` m."""
-        return replace(self, bottom=bottom)
+        return replace(self, center_above_hub=bottom + 0.5 * self.height - self.hub_height)
 
     def scaled(self, factor: float) -> Box:
         """The same fluctuations times ``factor``; InputError if the box holds the mean wind."""
