@@ -145,6 +145,26 @@ class Box:
         rows = 0 if self.tower is None else max(self.tower.shape[2] - 1, 0)
         return self.bottom - rows * self.spacing[2]
 
+    def missing(self, x: float, y: float, z: float, time: float) -> list[str]:
+        """What the box lacks to hold a point m of the wind's axes at ``time`` s, per side."""
+        half = 0.5 * self.width
+        gaps = {
+            "to the left": y - half,
+            "to the right": -half - y,
+            "above": z - self.top,
+            "below": self.lowest - z,
+        }
+        lacks = [f"{gap:.3g} m are missing {side}" for side, gap in gaps.items() if gap > 0.0]
+        if self.periodic:
+            return lacks
+        passed = self.mean_speed * time + self.lead - x
+        gaps = {"before its start": -passed, "after its end": passed - self.length}
+        return lacks + [
+            f"{gap / self.mean_speed:.3g} s are missing {side}"
+            for side, gap in gaps.items()
+            if gap > 0.0
+        ]
+
     def standing_on(self, bottom: float) -> Box:
         """The same box with its lowest row at the height ``bottom`` m."""
         return replace(self, center_above_hub=bottom + 0.5 * self.height - self.hub_height)
