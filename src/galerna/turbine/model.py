@@ -21,7 +21,8 @@ class Polar:
     """Static section coefficients at one Reynolds number, about the quarter chord.
 
     ``angle_of_attack`` (n,) rad ascends from -pi to pi; ``lift``, ``drag`` and
-    ``moment`` (n,) are cl, cd and cm (nose-up positive).
+    ``moment`` (n,) are cl, cd and cm (nose-up positive). ``configuration`` tags the
+    state of the surface, for example clean or tripped.
     """
 
     reynolds: float
@@ -29,6 +30,7 @@ class Polar:
     lift: Array
     drag: Array
     moment: Array
+    configuration: str = "default"
 
 
 @dataclass(frozen=True)
@@ -249,6 +251,7 @@ class Control:
     optimal_mode_gain: float | None = None
     pitch_schedule: Array | None = None
     minimum_pitch_table: Array | None = None  #: (n,2): wind speed m/s, pitch rad
+    speed_filter_frequency: float | None = None  #: rad/s, low-pass on the generator speed
 
 
 @dataclass(frozen=True)
@@ -266,7 +269,11 @@ class Published:
 
 @dataclass(frozen=True, eq=False)
 class Turbine:
-    """Everything that is simulated, from one file. ``sources`` names the publication per block."""
+    """Everything that is simulated, from one file.
+
+    ``sources`` names the publication per block; ``notes`` says what the reader
+    decided, ignored or found odd.
+    """
 
     name: str
     number_of_blades: int
@@ -282,6 +289,7 @@ class Turbine:
     sources: dict[str, str] = field(default_factory=dict)
     published: tuple[Published, ...] = ()
     description: str = ""
+    notes: tuple[str, ...] = ()
 
     @property
     def rotor_radius(self) -> float:
