@@ -42,10 +42,10 @@ class Grid(NamedTuple):
 @compiled
 def relative_speed(profile: Profile, height: float) -> float:
     """Mean speed at a height m over that at the hub."""
-    if height <= 0.0:
-        return 0.0
     if profile.shear == NONE:
         return 1.0
+    if height <= 0.0:
+        return 0.0
     if profile.shear == POWER_LAW:
         return (height / profile.hub_height) ** profile.parameter
     if profile.shear == LOGARITHMIC:

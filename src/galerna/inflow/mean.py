@@ -45,7 +45,7 @@ class Shear(IntEnum):
 
 
 class Profile(NamedTuple):
-    """Mean speed over height, 1 at ``hub_height`` m and 0 below the ground.
+    """Mean speed over height, relative to that at ``hub_height`` m; shear ends at the ground.
 
     ``parameter`` is the exponent, the roughness length m, or the relative gradient
     1/m. ``veer`` rad/m turns the wind about +z with height above the hub.
