@@ -1,0 +1,6 @@
+"""What a simulation leaves behind: labelled arrays with units, on disk from the first record."""
+
+from galerna.results.export import to_csv, to_outb
+from galerna.results.store import ResultFile, open_result
+
+__all__ = ["ResultFile", "open_result", "to_csv", "to_outb"]

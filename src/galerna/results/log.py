@@ -1,0 +1,115 @@
+"""The append-only log of a running simulation.
+
+One line of magic, one line of JSON that describes the records, then the records:
+rows of little-endian float64, the time first. Every row goes to the system in one
+write, so a run that is killed leaves all of them but the one in the making.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+
+from galerna.contract import Array, Channel
+from galerna.errors import ConvergenceError, InputError
+
+MAGIC = b"galerna log 1\n"
+LONGEST_HEADER = 64 * 1024 * 1024
+
+
+@dataclass(frozen=True, eq=False)
+class Layout:
+    """The channels of a record, the coordinates of their dimensions and the run's attributes."""
+
+    channels: tuple[Channel, ...]
+    coordinates: Mapping[str, Array]
+    attributes: Mapping[str, str | float]
+
+    def shape(self, channel: Channel) -> tuple[int, ...]:
+        """Shape of one record of a channel."""
+        return tuple(len(self.coordinates[name]) for name in channel.dims)
+
+    def slices(self) -> dict[str, slice]:
+        """Where each channel stands in a row."""
+        sizes = [int(np.prod(self.shape(channel), dtype=int)) for channel in self.channels]
+        ends = np.cumsum([1, *sizes])
+        return {
+            channel.name: slice(int(first), int(end))
+            for channel, (first, end) in zip(self.channels, pairwise(ends), strict=True)
+        }
+
+    @property
+    def width(self) -> int:
+        """Number of values in a row, time included."""
+        return 1 + sum(int(np.prod(self.shape(c), dtype=int)) for c in self.channels)
+
+    def to_json(self) -> str:
+        return json.dumps(
+            {
+                "channels": [asdict(channel) for channel in self.channels],
+                "coordinates": {k: np.asarray(v).tolist() for k, v in self.coordinates.items()},
+                "attributes": dict(self.attributes),
+            }
+        )
+
+    @classmethod
+    def from_json(cls, text: bytes) -> Layout:
+        entries = json.loads(text)
+        channels = tuple(
+            Channel(**{**entry, "dims": tuple(entry["dims"])}) for entry in entries["channels"]
+        )
+        coordinates = {k: np.array(v, dtype=float) for k, v in entries["coordinates"].items()}
+        return cls(channels, coordinates, entries["attributes"])
+
+
+class Log:
+    """The log of a run, open for writing."""
+
+    def __init__(self, path: Path, layout: Layout) -> None:
+        self.path = path
+        self._slices = tuple(layout.slices().items())
+        self._row = np.zeros(layout.width, dtype="<f8")
+        self._file = path.open("wb", buffering=0)
+        self._file.write(MAGIC + layout.to_json().encode() + b"\n")
+
+    def append(self, time: float, record: Mapping[str, float | Array]) -> None:
+        """Add the record at ``time`` s; ConvergenceError if a channel is not a number."""
+        row = self._row
+        row[0] = time
+        for name, place in self._slices:
+            value = record[name]
+            row[place] = value.ravel() if isinstance(value, np.ndarray) else value
+        if not np.isfinite(row.sum()):
+            bad = next(
+                (n for n, place in self._slices if not np.isfinite(row[place]).all()), "time"
+            )
+            raise ConvergenceError("results", f"channel {bad!r} is not a number", time=time)
+        self._file.write(row.tobytes())
+
+    def close(self) -> None:
+        self._file.close()
+
+
+def read_log(path: Path) -> tuple[Layout, Array]:
+    """Layout and rows (n, width) of a log; a record cut short at the end is left out.
+
+    Raises InputError if the file is not a log.
+    """
+    with path.open("rb") as file:
+        if file.readline(len(MAGIC)) != MAGIC:
+            raise InputError(str(path), "is not a log of galerna")
+        header = file.readline(LONGEST_HEADER)
+        try:
+            layout = Layout.from_json(header)
+            width = layout.width
+        except (ValueError, KeyError, TypeError) as error:
+            found = f"the description of the records is damaged ({error})"
+            raise InputError(str(path), found) from error
+        values = np.fromfile(file, dtype="<f8")
+    complete = len(values) // width
+    return layout, values[: complete * width].reshape(complete, width)

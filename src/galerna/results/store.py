@@ -1,0 +1,129 @@
+"""Result files: a log while the simulation runs, a NetCDF file when it has ended."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from galerna.contract import Array, Channel
+from galerna.errors import InputError
+from galerna.results.log import Layout, Log, read_log
+
+if TYPE_CHECKING:
+    import xarray
+
+COORDINATE_UNITS = {"time": "s", "blade": "", "radius": "m", "span": "", "height": "m"}
+
+
+def log_of(path: Path) -> Path:
+    """The log that stands beside a result file while its simulation runs."""
+    return path.with_name(path.name + ".log")
+
+
+class ResultFile:
+    """The result of one run on disk: append records, then ``finish``.
+
+    Raises InputError if a result stands there already and ``overwrite`` is not set;
+    with it, the old result stays until the new one is complete.
+    """
+
+    def __init__(self, path: Path, layout: Layout, overwrite: bool = False) -> None:
+        self.path = path
+        check_free(path, overwrite)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        self._log = Log(log_of(path), layout)
+
+    def append(self, time: float, record: Mapping[str, float | Array]) -> None:
+        """Add the record at ``time`` s."""
+        self._log.append(time, record)
+
+    def finish(self, status: str = "complete") -> xarray.Dataset:
+        """Turn the log into a NetCDF file and return what it holds."""
+        self._log.close()
+        dataset = _dataset(*read_log(self._log.path), status)
+        write_netcdf(dataset, self.path)
+        self._log.path.unlink()
+        return dataset
+
+
+def check_free(path: Path, overwrite: bool) -> None:
+    """Raise InputError if a result, whole or half-written, stands at ``path`` already."""
+    if path.is_dir():
+        raise InputError(str(path), "is a folder, expected the name of a result file (.nc)")
+    for existing in (path, log_of(path)):
+        if existing.exists() and not overwrite:
+            kind = "a result" if existing == path else "the half-written result of a stopped run"
+            hint = "name another file with --output, or replace it with --overwrite"
+            raise InputError(str(existing), f"{kind} stands here already", hint)
+
+
+def open_result(path: str | Path) -> xarray.Dataset:
+    """A result as a labelled dataset, finished or half-written; attribute ``status`` tells.
+
+    Raises InputError if there is none or it cannot be read.
+    """
+    path = Path(path)
+    if path.suffix == ".log" and path.exists():
+        return _dataset(*read_log(path), "half-written")
+    if not path.exists() and log_of(path).exists():
+        return _dataset(*read_log(log_of(path)), "half-written")
+    if not path.is_file():
+        raise InputError(str(path), "no such result", "galerna run CASE writes one")
+    import xarray
+
+    try:
+        return xarray.load_dataset(path, engine="netcdf4")
+    except (OSError, ValueError) as error:
+        raise InputError(str(path), f"is not a NetCDF result ({error})") from error
+
+
+def write_netcdf(dataset: xarray.Dataset, path: Path) -> None:
+    """Write a NetCDF file, complete or not at all."""
+    encoding = {name: {"zlib": True, "complevel": 1} for name in dataset.data_vars}
+    unfinished = path.with_name(path.name + ".unfinished")
+    dataset.to_netcdf(unfinished, engine="netcdf4", encoding=encoding)
+    os.replace(unfinished, path)
+
+
+def _dataset(layout: Layout, rows: Array, status: str) -> xarray.Dataset:
+    """The records as labelled arrays; those with dimensions beside time in single precision."""
+    import xarray
+
+    places = layout.slices()
+    variables = {
+        channel.name: (
+            ("time", *channel.dims),
+            _values(layout, channel, rows[:, places[channel.name]]),
+            _describe(channel),
+        )
+        for channel in layout.channels
+    }
+    used = {name for channel in layout.channels for name in channel.dims}
+    coordinates = {"time": rows[:, 0], **{n: layout.coordinates[n] for n in sorted(used)}}
+    labelled = {
+        name: (name, values, {"units": COORDINATE_UNITS.get(name, "")})
+        for name, values in coordinates.items()
+    }
+    return xarray.Dataset(variables, labelled, {**layout.attributes, "status": status})
+
+
+def _values(layout: Layout, channel: Channel, columns: Array) -> np.ndarray:
+    if not channel.dims:
+        return columns[:, 0].copy()
+    return columns.reshape(len(columns), *layout.shape(channel)).astype(np.float32)
+
+
+def _describe(channel: Channel) -> dict[str, str | float]:
+    """Unit, meaning and OpenFAST's name of a channel, as attributes."""
+    attributes: dict[str, str | float] = {"units": channel.unit, "long_name": channel.long_name}
+    if channel.openfast:
+        attributes |= {
+            "openfast": channel.openfast,
+            "openfast_unit": channel.openfast_unit,
+            "openfast_scale": channel.openfast_scale,
+        }
+    return attributes
