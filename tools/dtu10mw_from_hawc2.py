@@ -28,7 +28,10 @@ from scipy.interpolate import PchipInterpolator
 
 from galerna.turbine.cross_section import at_reference, inertia_matrix, stiffness_matrix
 
-ST_COLUMNS = "r m x_cg y_cg ri_x ri_y x_sh y_sh E G I_x I_y I_p k_x k_y A pitch x_e y_e".split()
+ST_COLUMNS = (
+    *("r", "m", "x_cg", "y_cg", "ri_x", "ri_y", "x_sh", "y_sh", "E", "G"),
+    *("I_x", "I_y", "I_p", "k_x", "k_y", "A", "pitch", "x_e", "y_e"),
+)
 GEAR_RATIO = 50.0
 POINTS_A_SIDE = 60
 TRAILING_EDGE_FACE = 8  # points of the surface mesh from the middle of the blunt edge to a corner
@@ -298,17 +301,8 @@ def tower(folder: Path, htc: str) -> dict:
 
 
 def drivetrain() -> dict:
-    """From the htc file: 7.1 m shaft tilted by 5 deg, 2.75 m over the tower top.
-
-    The nacelle's moments of inertia are moved from its mass centre to the tower top.
-    """
+    """From the htc file: 7.1 m shaft tilted by 5 deg, 2.75 m over the tower top."""
     tilt, shaft, over = np.radians(5.0), 7.1, 2.75
-    mass, behind, height = 446.04e3, 2.687, over - 0.30061
-    inertia = [
-        4.106e5 + mass * height**2,
-        4.106e6 + mass * (height**2 + behind**2),
-        4.106e6 + mass * behind**2,
-    ]
     stiffness = 8.08e10 * 0.2036 / shaft
     return {
         "outer_shape": {
@@ -334,9 +328,9 @@ def drivetrain() -> dict:
             },
         },
         "elastic_properties": {
-            "mass": mass,
-            "inertia": [*inertia, 0.0, -mass * behind * height, 0.0],
-            "location": [behind, 0.0, height],
+            "mass": 446.04e3,
+            "inertia": [4.106e5, 4.106e6, 4.106e6, 0.0, 0.0, 0.0],
+            "location": [2.687, 0.0, over - 0.30061],
         },
     }
 
