@@ -10,28 +10,31 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from typing import Literal
+from itertools import pairwise
 
 import numpy as np
 from numba import njit
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike
 from scipy import fft
 
 from galerna.contract import Array
-from galerna.errors import InputError, did_you_mean
-from galerna.inflow.box import Block, Box
+from galerna.errors import InputError
+from galerna.inflow.box import Box
 from galerna.inflow.mann_modes import Factor, LateralModes
 from galerna.inflow.mann_tensor import FAST
 from galerna.inflow.spectra import ISOTROPIC_VARIANCE, mann_variances
 from galerna.inflow.synthesis import (
+    NORMALISATIONS,
+    Normalisation,
+    Spectrum,
     random_generator,
+    require_grid,
+    require_name,
     require_one,
     require_positive,
-    require_shape,
+    to_space,
+    unit_variance,
 )
-
-Spectrum = NDArray[np.complex64]
-Normalisation = Literal["theory", "box", "sample"]
 
 _NODES_PER_DECADE = 24  #: of k1, at which the covariance is integrated; between, interpolated
 _MODES_AT_ONCE = 1 << 18  #: lateral modes in work at a time, for the cache and the memory
@@ -65,60 +68,63 @@ def mann_box(
     """A box of fluctuations with (nx, ny, nz) points, ``spacing`` m apart, periodic along x.
 
     Give one of ``alpha_epsilon`` (alpha epsilon^(2/3), m^(4/3)/s2), the standard
-    deviation of u in m/s, or the turbulence intensity (its ratio to ``mean_speed``).
-    ``normalise`` says of what the deviation is meant: ``"theory"``, of the whole
-    spectrum, so that the box lacks what its length and spacing leave out; ``"box"``, of
-    the expectation for this box; ``"sample"``, of the mean variance in this very box.
-    Its mean over x is zero everywhere. With ``high_frequency_compensation`` the box
-    holds the wind at points, without it the mean over cells of the grid. Unless
-    ``periodic_laterally``, twice the width and height are made and the rest is dropped.
-    The seed alone decides the numbers. Raises InputError if an argument makes no sense.
+    deviation of u in m/s, or the turbulence intensity (its ratio to ``mean_speed``);
+    ``Normalisation`` tells of what the deviation is meant. Its mean over x is zero at
+    every (y, z). With ``high_frequency_compensation`` the box holds the wind at points,
+    without it the mean over cells of the grid. Unless ``periodic_laterally``, twice the
+    width and height are made and the rest is dropped. The seed alone decides the numbers.
+    Raises InputError if an argument makes no sense. Mann (1998).
     """
     where = "Mann box"
-    require_shape(where, shape)
-    dx, dy, dz = spacing
-    require_positive(where, dx=dx, dy=dy, dz=dz, length_scale=length_scale, mean_speed=mean_speed)
+    require_grid(where, shape, spacing)
+    require_positive(where, length_scale=length_scale, mean_speed=mean_speed)
     if not (math.isfinite(shear_parameter) and shear_parameter >= 0.0):
         raise InputError(where, f"shear parameter is {shear_parameter:g}, expected 0 or more")
-    require_one(
-        where,
-        alpha_epsilon=alpha_epsilon,
-        standard_deviation=standard_deviation,
-        turbulence_intensity=turbulence_intensity,
-    )
-    if normalise not in (valid := ("theory", "box", "sample")):
-        raise InputError(where, f"normalise is {normalise!r}", did_you_mean(str(normalise), valid))
-    if turbulence_intensity is not None:
-        standard_deviation = turbulence_intensity * mean_speed
-    amount = alpha_epsilon if standard_deviation is None else standard_deviation
-    require_positive(where, **{"amount of turbulence": amount})
+    amounts = {
+        "alpha_epsilon": alpha_epsilon,
+        "standard_deviation": standard_deviation,
+        "turbulence_intensity": turbulence_intensity,
+    }
+    require_one(where, **amounts)
+    require_positive(where, **{name: x for name, x in amounts.items() if x is not None})
+    require_name(where, "normalise", normalise, NORMALISATIONS)
 
-    if periodic_laterally:
-        lateral = (shape[1], shape[2])
-    else:
-        lateral = (fft.next_fast_len(2 * shape[1]), fft.next_fast_len(2 * shape[2]))
-    modes = LateralModes(
-        lateral,
-        (lateral[0] * dy / length_scale, lateral[1] * dz / length_scale),
-        (dx / length_scale, dy / length_scale, dz / length_scale),
+    modes = _lateral_modes(
+        shape,
+        spacing,
+        length_scale,
         shear_parameter,
         high_frequency_compensation,
+        periodic_laterally,
     )
-    spectrum, variance = _half_spectrum(shape, modes, dx / length_scale, random_generator(seed))
-    data = _to_space(spectrum, shape[0])
-    if standard_deviation is None:
+    spectrum, expected = _half_spectrum(shape, modes, random_generator(seed))
+    data = to_space(spectrum, shape[0])
+    if alpha_epsilon is not None:
         data *= np.float32(math.sqrt(alpha_epsilon) * length_scale ** (1 / 3))
     else:
-        if normalise == "theory":
-            variance = float(mann_variances(1.0, shear_parameter)[0])
-        elif normalise == "sample":
-            variance = float(np.mean(np.square(data[0]), dtype=np.float64))
-        data *= np.float32(standard_deviation / math.sqrt(variance))
+        deviation = standard_deviation or (turbulence_intensity or 0.0) * mean_speed
+        theory = float(mann_variances(1.0, shear_parameter)[0])
+        variance = unit_variance(normalise, theory, expected, data[0])
+        data *= np.float32(deviation / math.sqrt(variance))
     return Box(data, spacing, mean_speed, hub_height, source=where)
 
 
+def _lateral_modes(
+    shape: tuple[int, int, int],
+    spacing: tuple[float, float, float],
+    length_scale: float,
+    shear_parameter: float,
+    point_values: bool,
+    periodic: bool,
+) -> LateralModes:
+    """The modes over y and z, in length scales."""
+    ny, nz = shape[1:] if periodic else (fft.next_fast_len(2 * n) for n in shape[1:])
+    dx, dy, dz = (d / length_scale for d in spacing)
+    return LateralModes((ny, nz), (ny * dy, nz * dz), (dx, dy, dz), shear_parameter, point_values)
+
+
 def _half_spectrum(
-    shape: tuple[int, int, int], modes: LateralModes, dx: float, rng: np.random.Generator
+    shape: tuple[int, int, int], modes: LateralModes, rng: np.random.Generator
 ) -> tuple[Spectrum, float]:
     """Fourier modes along x (3,nx/2+1,ny,nz) at the points (y, z), and the variance of u expected.
 
@@ -126,7 +132,7 @@ def _half_spectrum(
     """
     nx, ny, nz = shape
     spectrum = np.zeros((3, nx // 2 + 1, ny, nz), dtype=np.complex64)
-    width = 2.0 * math.pi / (nx * dx)
+    width = 2.0 * math.pi / (nx * modes.spacing[0])
     batch = max(1, _MODES_AT_ONCE // math.prod(modes.shape))
     variance = 0.0
     for first, last, low, high in _intervals(nx // 2 - 1, modes, width):
@@ -142,9 +148,9 @@ def _half_spectrum(
     return spectrum, variance
 
 
-def _shape_of(k1: Array | float) -> Array:
+def _shape_of(k1: ArrayLike) -> Array:
     """Square root of the isotropic spectrum's shape: what the factors are interpolated over."""
-    return (1.0 + np.square(k1)) ** (-5 / 12)
+    return (1.0 + np.square(np.asarray(k1, dtype=np.float64))) ** (-5 / 12)
 
 
 Node = tuple[float, Factor]
@@ -162,7 +168,7 @@ def _intervals(
         return float(n), modes.factors(k1, width) / np.float32(_shape_of(k1))
 
     low = node(nodes[0])
-    for first, last in zip(nodes[:-1], nodes[1:], strict=True):
+    for first, last in pairwise(nodes):
         high = node(last)
         yield int(first), int(last), low, high
         low = high
@@ -193,11 +199,3 @@ def _fill(
                 out[n, 2, j, l] = wu * x + wv * y + ww * z
                 variance += 4.0 * uu * uu
     return variance
-
-
-def _to_space(spectrum: Spectrum, nx: int) -> Block:
-    """Velocities (3,nx,ny,nz) of the half spectrum along x, one component at a time."""
-    data = np.empty((3, nx, *spectrum.shape[2:]), dtype=np.float32)
-    for c in range(3):
-        data[c] = fft.irfft(spectrum[c], n=nx, axis=0, norm="forward")
-    return data

@@ -36,8 +36,9 @@ def axis_quadrature(count: int, width: float, finest: float) -> tuple[NDArray, A
         away = abs(cell)
         number = 24 if away == 0 else 4 if away < 4 else 2 if away < 12 else 1
         gauss, share = np.polynomial.legendre.leggauss(number)
-        low, high = np.arcsinh((cell - 0.5) * width / finest), np.arcsinh(
-            (cell + 0.5) * width / finest
+        low, high = (
+            np.arcsinh((cell - 0.5) * width / finest),
+            np.arcsinh((cell + 0.5) * width / finest),
         )
         s = 0.5 * (low + high) + 0.5 * (high - low) * gauss
         points.append(finest * np.sinh(s))
@@ -78,7 +79,7 @@ def _aliases(k1: float, gamma: float, y: Array, z: Array, widths: tuple, out: Ar
 
 
 @njit(cache=True, error_model="numpy")
-def _factors(cells: Array, out: Factor, scale: float) -> None:
+def _factors(cells: Array, out: Factor) -> None:
     """Lower triangular factors of (6,ny,nz) in the order 11, 21, 31, 22, 32, 33.
 
     A direction without energy of its own gets a column of zeros.
@@ -93,8 +94,8 @@ def _factors(cells: Array, out: Factor, scale: float) -> None:
             d = math.sqrt(rest) if rest > nothing else 0.0
             e = (vw - b * c) / d if d > 0.0 else 0.0
             f = math.sqrt(max(ww - c * c - e * e, 0.0))
-            out[0, j, l], out[1, j, l], out[2, j, l] = scale * a, scale * b, scale * c
-            out[3, j, l], out[4, j, l], out[5, j, l] = scale * d, scale * e, scale * f
+            out[0, j, l], out[1, j, l], out[2, j, l] = a, b, c
+            out[3, j, l], out[4, j, l], out[5, j, l] = d, e, f
 
 
 class LateralModes:
@@ -117,38 +118,39 @@ class LateralModes:
         self.shape, self.spacing = shape, spacing
         self.shear_parameter, self.point_values = shear_parameter, point_values
         self.width = (2.0 * math.pi / period[0], 2.0 * math.pi / period[1])
-        self.centres = tuple(
-            np.fft.fftfreq(n, 1.0 / n) * d for n, d in zip(shape, self.width, strict=True)
+        self.k2, self.k3 = (
+            np.asarray(2.0 * math.pi * np.fft.fftfreq(n, p / n), dtype=np.float64)
+            for n, p in zip(shape, period, strict=True)
         )
 
     def factors(self, k1: float, k1_width: float) -> Factor:
         """Factors (6,ny,nz) of the mean covariance over ``k1_width`` around ``k1``.
 
-        They stand for E[X X^T] of the modes X with unit k1 width. The wavenumber is
-        against the arrival of the planes, so along x it is ``-k1``.
+        They stand for E[X X^T] of the modes X with unit k1 width. The wavenumber counts
+        in the order of arrival of the planes, so along x it is ``-k1``.
         """
         half = 0.5 * k1_width / math.sqrt(3.0)
-        waves = (k1 - half, k1 + half)  # two Gauss points
+        # two Gauss points where the spectrum bends within the width, the middle elsewhere
+        waves = (k1 - half, k1 + half) if k1 < 8.0 * k1_width else (k1,)
         cells = np.zeros((6, *self.shape))
         for wave in waves:
             self._add(cells, wave)
-        cells *= 0.5
+        cells /= len(waves)
         if self.point_values:
             self._add_unresolved(cells, mann_spectra(waves, 1.0, self.shear_parameter).mean(axis=0))
         else:
             cells *= self._cell_filter(k1)
         out = np.empty(cells.shape, dtype=np.float32)
-        _factors(cells, out, 1.0)
+        _factors(cells, out)
         return out
 
     def _add(self, cells: Array, k1: float) -> None:
         y, z = (
-            axis_quadrature(n, d, min(k1, 1.0))
-            for n, d in zip(self.shape, self.width, strict=True)
+            axis_quadrature(n, d, min(k1, 1.0)) for n, d in zip(self.shape, self.width, strict=True)
         )
         _cells(-k1, self.shear_parameter, y, z, cells)
         if self.point_values:
-            _aliases(-k1, self.shear_parameter, *self.centres, self.width, cells)
+            _aliases(-k1, self.shear_parameter, self.k2, self.k3, self.width, cells)
 
     def _add_unresolved(self, cells: Array, spectra: Array) -> None:
         """Spread evenly what the spectra at a point hold beyond the first ring of aliases."""
@@ -162,9 +164,8 @@ class LateralModes:
 
     def _cell_filter(self, k1: float) -> Array:
         """Share (ny,nz) of the energy that is left of a mean over a cell of the grid."""
-        k2, k3 = self.centres
         shares = [
             np.sinc(np.asarray(k) * d / (2.0 * math.pi)) ** 2
-            for k, d in zip((k1, k2[:, None], k3[None, :]), self.spacing, strict=True)
+            for k, d in zip((k1, self.k2[:, None], self.k3[None, :]), self.spacing, strict=True)
         ]
         return shares[0] * shares[1] * shares[2]

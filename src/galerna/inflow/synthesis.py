@@ -1,12 +1,24 @@
-"""What the generators of turbulence boxes share: the seed and the checks of their arguments."""
+"""What the generators of turbulence boxes share: seed, checks, the way back from modes."""
 
 from __future__ import annotations
 
 import math
+from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy import fft
 
-from galerna.errors import InputError
+from galerna.errors import InputError, did_you_mean
+from galerna.inflow.box import Block
+
+Spectrum = NDArray[np.complex64]
+
+#: Of what a standard deviation is meant: ``"theory"``, of the whole spectrum, so that a box
+#: lacks what its length and spacing leave out; ``"box"``, of what a box of this length and
+#: spacing has on average over the seeds; ``"sample"``, of this very box, on average over it.
+Normalisation = Literal["theory", "box", "sample"]
+NORMALISATIONS = ("theory", "box", "sample")
 
 
 def random_generator(seed: int) -> np.random.Generator:
@@ -23,15 +35,23 @@ def require_positive(where: str, **figures: float) -> None:
             raise InputError(where, f"{label} is {value:g}, expected a positive number")
 
 
-def require_one(where: str, **figures: float | None) -> None:
-    """Raise InputError unless exactly one of the figures is given."""
-    given = [name for name, value in figures.items() if value is not None]
+def require_one(where: str, **arguments: object) -> None:
+    """Raise InputError unless exactly one of the arguments is given."""
+    given = [name for name, value in arguments.items() if value is not None]
     if len(given) != 1:
         found = " and ".join(given) if given else "none"
-        raise InputError(where, f"expected one of {', '.join(figures)}, found {found}")
+        raise InputError(where, f"expected one of {', '.join(arguments)}; found {found}")
 
 
-def require_shape(where: str, shape: tuple[int, int, int]) -> None:
+def require_name(where: str, name: str, value: str, valid: tuple[str, ...]) -> None:
+    """Raise InputError unless ``value`` is one of the valid ones."""
+    if value not in valid:
+        raise InputError(where, f"{name} is {value!r}", did_you_mean(str(value), valid))
+
+
+def require_grid(
+    where: str, shape: tuple[int, int, int], spacing: tuple[float, float, float]
+) -> None:
     """Raise InputError unless a box of this shape can be made: nx even and at least 4."""
     if len(shape) != 3 or shape[0] < 4 or shape[0] % 2 or min(shape[1:]) < 2:
         raise InputError(
@@ -39,3 +59,23 @@ def require_shape(where: str, shape: tuple[int, int, int]) -> None:
             f"shape is {tuple(shape)}, expected (nx, ny, nz) with nx even and at least 4, "
             "ny and nz at least 2",
         )
+    dx, dy, dz = spacing
+    require_positive(where, dx=dx, dy=dy, dz=dz)
+
+
+def unit_variance(normalise: str, theory: float, expected: float, sample: Block) -> float:
+    """The variance that is scaled to the target, m2/s2: see ``Normalisation``."""
+    if normalise == "sample":
+        return float(np.mean(np.square(sample), dtype=np.float64))
+    return theory if normalise == "theory" else expected
+
+
+def to_space(spectrum: Spectrum, nx: int) -> Block:
+    """Velocities (3,nx,ny,nz) of a half spectrum (3,nx/2+1,ny,nz) over x.
+
+    With E|X_n|^2 of the mode n, the variance is the sum of 2 E|X_n|^2 over n > 0.
+    """
+    data = np.empty((3, nx, *spectrum.shape[2:]), dtype=np.float32)
+    for c in range(3):
+        data[c] = fft.irfft(spectrum[c], n=nx, axis=0, norm="forward")
+    return data
