@@ -129,6 +129,20 @@ class TimeSeries:
         """Last time s."""
         return float(self._time[-1])
 
+    def turned(self, direction: float, upflow: float) -> TimeSeries:
+        """The same series with a direction and an upflow, rad, added at every time."""
+        fields = dict(zip(HubWind._fields, np.array(self._rows).T, strict=True))
+        fields["direction"] = fields["direction"] + direction
+        fields["upflow"] = fields["upflow"] + upflow
+        return TimeSeries(self._time, **fields)
+
+    def mean_speed(self, duration: float) -> float:
+        """Mean of the speed m/s from time 0 to ``duration`` s."""
+        inside = self._time[(self._time > 0.0) & (self._time < duration)]
+        time = np.concatenate([[0.0], inside, [duration]])
+        speed = np.array([self.at(t).speed for t in time])
+        return float(np.trapezoid(speed, time) / duration)
+
     def at(self, time: float) -> HubWind:
         """The hub wind at ``time`` s."""
         after = bisect_right(self._times, time)
