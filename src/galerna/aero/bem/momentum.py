@@ -18,7 +18,7 @@ problem mirrored.
 
 from __future__ import annotations
 
-from math import acos, atan2, cos, exp, pi, sin, sqrt
+from math import acos, cos, exp, pi, sin, sqrt
 from typing import NamedTuple
 
 from numba import njit
@@ -100,12 +100,13 @@ def balance(phi, table, station, pitch, normal, tangential, strip, switches):  #
 
     ``normal`` > 0; ``pitch`` is the angle from the rotor plane to the chord. ``strip`` holds
     the solidities of the normal and the tangential balance, the exponents of tip and root
-    loss, and the sign that mirrors the section when the wind comes from behind.
+    loss, the sign that mirrors the section when the wind comes from behind, and a lift
+    coefficient to add to the polar's.
     """
-    sigma_normal, sigma_tangential, tip, root, mirror = strip
+    sigma_normal, sigma_tangential, tip, root, mirror, lift_shift = strip
     sine, cosine = sin(phi), cos(phi)
     lift, drag, _ = section_coefficients(table, station, mirror * phi - pitch)
-    lift *= mirror
+    lift = mirror * (lift + lift_shift)
     loss = 1.0
     if switches.tip_loss > 0.0:
         loss = prandtl_loss(tip, sine)

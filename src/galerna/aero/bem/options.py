@@ -14,50 +14,56 @@ class BemOptions(BaseModel):
 
     model_config = ConfigDict(frozen=True, extra="forbid")
 
-    model: Literal["bem"] = Field("bem", description="Blade-element momentum.")
+    model: Literal["bem"] = Field(default="bem", description="Blade-element momentum.")
     stations: Annotated[int, Field(ge=3, le=1000)] | tuple[SpanFraction, ...] | None = Field(
-        None,
+        default=None,
         description="Strips per blade: a number of equally spaced stations, a rising list of "
         "span fractions, or nothing for the turbine's own stations.",
     )
-    tip_loss: bool = Field(True, description="Prandtl's tip loss.")
-    root_loss: bool = Field(True, description="Prandtl's loss at the blade root.")
+    tip_loss: bool = Field(default=True, description="Prandtl's tip loss.")
+    root_loss: bool = Field(default=True, description="Prandtl's loss at the blade root.")
     high_thrust: Literal["buhl", "glauert", "wilson_walker", "none"] = Field(
-        "buhl",
+        default="buhl",
         description="Empirical thrust of the turbulent wake state: Buhl (2005), Glauert's curve "
         "as given by Hansen (2015), Wilson and Walker's line, or momentum theory alone.",
     )
-    induction: bool = Field(True, description="Induced velocities; off is pure blade element.")
-    tangential_induction: bool = Field(True, description="Swirl of the wake at the rotor.")
-    drag_in_axial_induction: bool = Field(True, description="Drag in the axial momentum balance.")
-    drag_in_tangential_induction: bool = Field(True, description="Drag in the swirl balance.")
+    induction: bool = Field(
+        default=True, description="Induced velocities; off is pure blade element."
+    )
+    tangential_induction: bool = Field(default=True, description="Swirl of the wake at the rotor.")
+    drag_in_axial_induction: bool = Field(
+        default=True, description="Drag in the axial momentum balance."
+    )
+    drag_in_tangential_induction: bool = Field(
+        default=True, description="Drag in the swirl balance."
+    )
     skewed_wake: Literal["vortex_cylinder", "pitt_peters", "none"] = Field(
-        "vortex_cylinder",
+        default="vortex_cylinder",
         description="Azimuthal variation of the induction under yaw and tilt.",
     )
     dynamic_inflow: Literal["oye", "none"] = Field(
-        "oye", description="Lag of the induction behind the rotor's loading."
+        default="oye", description="Lag of the induction behind the rotor's loading."
     )
     unsteady_airfoil: Literal["beddoes_leishman", "none"] = Field(
-        "beddoes_leishman", description="Unsteady section aerodynamics with dynamic stall."
+        default="beddoes_leishman", description="Unsteady section aerodynamics with dynamic stall."
     )
     rotational_augmentation: Literal["none", "snel", "du_selig"] = Field(
-        "none", description="Stall delay by rotation, applied to the polars beforehand."
+        default="none", description="Stall delay by rotation, applied to the polars beforehand."
     )
     spanwise_filter: Literal["off", "loads", "feedback"] = Field(
-        "off",
+        default="off",
         description="Interaction of neighbouring sections under spanwise-varying inflow: on the "
         "loads alone, or fed back into the momentum balance.",
     )
     angle_of_attack_point: Literal["three_quarter_chord", "aerodynamic_center"] = Field(
-        "three_quarter_chord",
+        default="three_quarter_chord",
         description="Where a turning section reads its angle of attack.",
     )
     tower_influence: bool = Field(
-        True, description="Tower dam effect and shadow on the wind that the blades meet."
+        default=True, description="Tower dam effect and shadow on the wind that the blades meet."
     )
     quasi_steady: bool = Field(
-        False,
+        default=False,
         description="Switch all unsteady parts off at once: dynamic inflow, unsteady airfoil.",
     )
 
