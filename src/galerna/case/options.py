@@ -1,0 +1,140 @@
+"""What one simulation is: the blocks of a case file, with units in their names."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import (
+    BaseModel,
+    ConfigDict,
+    Discriminator,
+    Field,
+    FiniteFloat,
+    NonNegativeFloat,
+    PositiveFloat,
+    Tag,
+    field_validator,
+    model_validator,
+)
+
+from galerna.aero.bem.options import BemOptions
+from galerna.inflow.options import InflowOptions
+from galerna.units import AIR_DENSITY
+
+DEFAULT_INTERVAL = 0.1  #: s
+
+
+class Block(BaseModel):
+    """A block of a case: it cannot be changed, and refuses keys it does not know."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", populate_by_name=True)
+
+
+class Series(Block):
+    """A quantity over time: straight between its points, constant before and after them."""
+
+    time_s: tuple[FiniteFloat, ...] = Field(min_length=1, description="Times, rising.")
+    values: tuple[FiniteFloat, ...] = Field(min_length=1, description="One value for every time.")
+
+    @field_validator("time_s")
+    @classmethod
+    def _rises(cls, time: tuple[float, ...]) -> tuple[float, ...]:
+        for i, (before, after) in enumerate(pairwise(time)):
+            if after <= before:
+                raise ValueError(f"times must rise, found {after:g} after {before:g} at [{i + 1}]")
+        return time
+
+    @model_validator(mode="after")
+    def _matches(self) -> Self:
+        if len(self.time_s) != len(self.values):
+            raise ValueError(f"{len(self.time_s)} times for {len(self.values)} values")
+        return self
+
+
+def _form(value: Any) -> str:
+    if isinstance(value, dict | Series):
+        return "series"
+    return "blades" if isinstance(value, list | tuple) else "number"
+
+
+Number = Annotated[FiniteFloat, Tag("number")]
+OverTime = Annotated[Number | Annotated[Series, Tag("series")], Discriminator(_form)]
+PerBlade = Annotated[
+    Number
+    | Annotated[Series, Tag("series")]
+    | Annotated[tuple[OverTime, ...], Field(min_length=1), Tag("blades")],
+    Discriminator(_form),
+]
+
+
+class Operation(Block):
+    """How the machine is run. Every angle and speed is a number, or a series over time."""
+
+    operating_point: Literal["given", "steady"] = Field(
+        "given",
+        description="'steady' takes the rotor speed and the pitch that are not given from the "
+        "turbine's own operating curve at the mean wind speed.",
+    )
+    rotor_speed_rpm: OverTime | None = Field(
+        None, description="Rotor speed, positive clockwise looking downwind."
+    )
+    pitch_deg: PerBlade | None = Field(
+        None, description="Blade pitch towards feather: one for all blades, or a list of one each."
+    )
+    yaw_deg: OverTime = Field(
+        0.0, description="Nacelle yaw, positive about the vertical (up); 0 faces wind along +x."
+    )
+    azimuth_deg: FiniteFloat = Field(0.0, description="Azimuth of blade 1 at time 0; 0 is up.")
+
+    @model_validator(mode="after")
+    def _is_determined(self) -> Self:
+        if self.operating_point == "given" and self.rotor_speed_rpm is None:
+            raise ValueError("give rotor_speed_rpm, or operating_point: steady")
+        return self
+
+
+class Outputs(Block):
+    """What is recorded, and when."""
+
+    interval_s: PositiveFloat | None = Field(
+        None,
+        description="Time between records, a whole number of time steps; about 0.1 s by default.",
+    )
+    start_s: NonNegativeFloat = Field(
+        0.0, description="Records before this time are left out: the start-up transient."
+    )
+    channels: tuple[str, ...] = Field(
+        ("*",), min_length=1, description="Channel names, or patterns with * and ?."
+    )
+
+
+class Case(Block):
+    """One simulation: the turbine, the wind it meets, how it is run and what is recorded."""
+
+    version: Literal[1] = Field(
+        alias="galerna", description="Version of the case format that the file was written for."
+    )
+    name: str = Field("", description="A short name; by default that of the file.")
+    description: str = Field("", description="What the case is for.")
+    turbine: str = Field(
+        min_length=1,
+        description="A built-in turbine (galerna turbines), a windIO file or an OpenFAST deck.",
+    )
+    duration_s: PositiveFloat = Field(description="Simulated time.")
+    time_step_s: PositiveFloat = Field(0.02, description="Time step.")
+    air_density_kg_m3: PositiveFloat = Field(AIR_DENSITY, description="Density of the air.")
+    seed: int = Field(1, ge=0, description="Seed of everything random: same case, same bits.")
+    inflow: InflowOptions = Field(description="The wind.")
+    aerodynamics: BemOptions = Field(
+        BemOptions(), description="The aerodynamic model of the rotor."
+    )
+    tower_and_nacelle_drag: bool = Field(True, description="Drag of the tower and the nacelle.")
+    operation: Operation = Field(description="How the machine is run.")
+    outputs: Outputs = Field(Outputs(), description="What is recorded.")
+
+    @property
+    def record_every(self) -> int:
+        """Steps from one record to the next."""
+        interval = self.outputs.interval_s or DEFAULT_INTERVAL
+        return max(round(interval / self.time_step_s), 1)

@@ -1,0 +1,119 @@
+"""From a YAML file, a built-in example's name or a dictionary to a checked case."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from galerna import examples
+from galerna.case.document import CaseError, Document, Problem, parse_document, read_document
+from galerna.case.options import Case
+from galerna.case.problems import problems_of
+from galerna.errors import InputError, did_you_mean
+
+
+@dataclass(frozen=True)
+class LoadedCase:
+    """A case, the text it came from, and the folder that its file names start from."""
+
+    case: Case
+    document: Document
+    folder: Path
+
+    @property
+    def name(self) -> str:
+        """The case's own name, or that of its file."""
+        return self.case.name or Path(self.document.name).stem
+
+    def lasting(self, duration: float) -> LoadedCase:
+        """The same case over another duration, s."""
+        values = {**self.document.values, "duration_s": duration}
+        document = replace(self.document, values=values)
+        return LoadedCase(_validate(document), document, self.folder)
+
+    @contextmanager
+    def blame(self, *path: str | int) -> Iterator[None]:
+        """Say that an InputError raised inside comes from the key ``path`` of this case."""
+        try:
+            yield
+        except CaseError:
+            raise
+        except InputError as error:
+            what = f"{error.where}: {error.what}"
+            raise CaseError(self.document, [Problem(path, what, error.hint)]) from error
+
+
+def load(case: str | Path | Mapping[str, Any]) -> LoadedCase:
+    """A case from a YAML file, the name of a built-in example, or a dictionary of the same keys.
+
+    Raises InputError with everything that is wrong.
+    """
+    if isinstance(case, Mapping):
+        values = json.loads(json.dumps(case, default=_plain))
+        text = json.dumps(values, indent=2)
+        document = Document("case", text, values)
+        return LoadedCase(_validate(document), document, Path.cwd())
+    path = Path(case)
+    if not path.exists() and str(case) in examples.case_names():
+        return _from_document(read_document(examples.case_path(str(case))), examples.folder())
+    if not path.is_file():
+        hint = did_you_mean(str(case), examples.case_names())
+        raise InputError(str(case), "is neither a case file nor a built-in example", hint)
+    return _from_document(read_document(path), path.resolve().parent)
+
+
+def parse(text: str, name: str = "case.yaml", folder: str | Path = ".") -> LoadedCase:
+    """A case from YAML text; InputError with everything that is wrong."""
+    return _from_document(parse_document(text, name), Path(folder))
+
+
+def _from_document(document: Document, folder: Path) -> LoadedCase:
+    return LoadedCase(_validate(document), document, folder)
+
+
+def _validate(document: Document) -> Case:
+    try:
+        case = Case.model_validate(document.values)
+    except ValidationError as error:
+        raise CaseError(document, problems_of(error, Case, document.values)) from None
+    problems = list(_contradictions(case))
+    if problems:
+        raise CaseError(document, problems)
+    return case
+
+
+def _contradictions(case: Case) -> Iterator[Problem]:
+    """What is wrong between keys that are each right."""
+    step, duration, outputs = case.time_step_s, case.duration_s, case.outputs
+    if duration < step:
+        what = f"{duration:g} s is less than one time_step_s of {step:g} s"
+        yield Problem(("duration_s",), what)
+    if outputs.start_s >= duration:
+        what = f"{outputs.start_s:g} s leaves nothing of the {duration:g} s of duration_s"
+        yield Problem(("outputs", "start_s"), what)
+    interval = outputs.interval_s
+    if interval is None:
+        return
+    if interval > duration:
+        what = f"{interval:g} s is longer than duration_s, {duration:g} s"
+        yield Problem(("outputs", "interval_s"), what)
+    steps = interval / step
+    if abs(steps - round(steps)) > 1e-6 * steps or round(steps) < 1:
+        what = f"{interval:g} s is not a whole number of time steps of {step:g} s"
+        nearest = max(round(steps), 1) * step
+        yield Problem(("outputs", "interval_s"), what, f"the nearest is {nearest:g} s")
+
+
+def _plain(value: Any) -> Any:
+    """NumPy numbers and arrays, tuples and paths as JSON knows them."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    if isinstance(value, Path):
+        return str(value)
+    raise InputError("case", f"a {type(value).__name__} cannot stand in a case")
