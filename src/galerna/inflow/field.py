@@ -91,7 +91,8 @@ class WindField:
         cu, su = np.cos(wind.upflow), np.sin(wind.upflow)
         hub = np.array([0.0, 0.0, self.profile.hub_height])
         to_wind = np.array([[c * cu, s * cu, su], [-s, c, 0.0], [-c * su, -s * su, cu]])
-        x, y, z = to_wind @ (point - hub) + hub
+        with np.errstate(invalid="ignore"):  # a point that is not a number has no place
+            x, y, z = to_wind @ (point - hub) + hub
         at = f"the point ({', '.join(f'{p:.6g}' for p in point)}) m at t = {time:.6g} s"
         reasons = self.box.missing(x, y, z, time)
         hint = (
