@@ -17,7 +17,7 @@ LARGEST_FILE = 64_000_000  #: bytes
 MOST_VALUES = 5_000_000  #: after aliases are followed: a small file can expand without end
 DEEPEST_INCLUDE = 4
 
-_ROW = re.compile(r"^( *(?:- )*\w+: )(\[[-+0-9.eE, ]+\])[ \t]*$", re.MULTILINE)
+_ROW = re.compile(r"^( *(?:- )*\w+: )(\[[-+0-9.eE,\s]+\])[ \t]*$", re.MULTILINE)
 _BLOCK_TEXT = re.compile(r":[ \t]+[|>]")
 
 
@@ -99,7 +99,7 @@ def _take_rows(text: str) -> tuple[str, list[list[float]]]:
             rows.append(json.loads(match[2]))
         except ValueError:
             return match[0]
-        return f"{match[1]}!row {len(rows) - 1}"
+        return f"{match[1]}!row {len(rows) - 1}" + match[2].count("\n") * "\n"
 
     return (text, rows) if _BLOCK_TEXT.search(text) else (_ROW.sub(take, text), rows)
 

@@ -8,11 +8,10 @@ import numpy as np
 
 from galerna.errors import did_you_mean
 from galerna.turbine import unsteady
-from galerna.turbine.block import Block
 from galerna.turbine.model import Airfoil, Array, Polar, UnsteadyParameters
+from galerna.turbine.outline import camber_line, suction_side_first
+from galerna.turbine.windio.block import Block, merged_grid
 from galerna.units import DEG
-
-_CAMBER_POINTS = 81
 
 
 def read_airfoils(document: Block) -> dict[str, tuple[Block, list[Block]]]:
@@ -55,13 +54,25 @@ def build_airfoil(
     )
 
 
-def camber_line(coordinates: Array) -> Array:
-    """Mean line (m,2) of x/c and z/c of a closed outline (n,2), halfway between its sides."""
-    nose = int(np.argmin(coordinates[:, 0]))
-    upper, lower = coordinates[nose::-1], coordinates[nose:]
-    x = (1.0 - np.cos(np.linspace(0.0, np.pi, _CAMBER_POINTS))) / 2.0
-    sides = [np.interp(x, *np.unique(s, axis=0).T) for s in (upper, lower)]
-    return np.column_stack([x, (sides[0] + sides[1]) / 2.0])
+def blend_weights(entry: Block) -> dict[str, float]:
+    """Weight per polar configuration of an airfoil on the blade; empty where none is named."""
+    if not entry.has("configuration"):
+        return {}
+    names = entry.value("configuration")
+    if not isinstance(names, list) or not names or not all(isinstance(n, str) for n in names):
+        raise entry.error("expected a list of names", "", "configuration")
+    alone = len(names) == 1 and not entry.has("weight")
+    weights = np.ones(1) if alone else entry.array("weight", len(names), 0.0)
+    if abs(weights.sum() - 1.0) > 1e-6:
+        raise entry.error(f"the weights add up to {weights.sum():g} instead of 1", "", "weight")
+    return {n: float(w) for n, w in zip(names, weights, strict=True) if w > 0.0}
+
+
+def blend_name(name: str, weights: dict[str, float]) -> str:
+    """The airfoil's name, with the blend where there is one: ``NAME [0.7 clean + 0.3 rough]``."""
+    if len(weights) < 2:
+        return name
+    return f"{name} [{' + '.join(f'{weight:g} {part}' for part, weight in weights.items())}]"
 
 
 def _chosen(
@@ -84,15 +95,9 @@ def _polar(block: Block, configuration: str) -> Polar:
         curves[key] = grid, inner.array("values", len(grid))
     angles = merged_grid(*(grid for grid, _ in curves.values()))
     lift, drag, moment = (np.interp(angles, grid, values) for grid, values in curves.values())
-    if (drag < 0.0).any() and drag.min() < -0.1:
+    if drag.min() < -0.1:
         raise block.error(f"drag coefficient of {drag.min():g}", "drag cannot push", "cd", "values")
     return Polar(block.number("re", low=0.0), angles * DEG, lift, drag, moment, configuration)
-
-
-def merged_grid(*grids: Array) -> Array:
-    """All points of several grids, ascending; points closer than rounding are one."""
-    merged = np.unique(np.concatenate(grids))
-    return merged[np.append(True, np.diff(merged) > 1e-9 * (merged[-1] - merged[0]))]
 
 
 def _mean_polars(block: Block, weighted: list[tuple[float, Polar]]) -> list[Polar]:
@@ -117,17 +122,15 @@ def _mean_polars(block: Block, weighted: list[tuple[float, Polar]]) -> list[Pola
 
 
 def _coordinates(block: Block) -> Array | None:
-    """Outline from the trailing edge over the suction side; turned round if the file has it so."""
+    """Outline from the trailing edge over the suction side and back."""
     if not block.has("coordinates"):
         return None
     inner = block.block("coordinates")
     x = inner.array("x")
     outline = np.column_stack([x, inner.array("y", len(x))])
-    nose = int(np.argmin(x))
-    if len(x) < 5 or not 0 < nose < len(x) - 1:
+    if len(x) < 5 or not 0 < int(np.argmin(x)) < len(x) - 1:
         raise inner.error("must run from the trailing edge round the nose and back")
-    upper, lower = outline[: nose + 1, 1].mean(), outline[nose:, 1].mean()
-    return outline if upper >= lower else outline[::-1].copy()
+    return suction_side_first(outline)
 
 
 def _published(block: Block) -> UnsteadyParameters | None:

@@ -10,7 +10,7 @@ import numpy as np
 
 from galerna.errors import InputError, did_you_mean
 from galerna.turbine.model import Array
-from galerna.turbine.yamlfile import Document, Keys
+from galerna.turbine.windio.yamlfile import Document, Keys
 
 _REQUIRED: Any = object()
 
@@ -125,6 +125,12 @@ class Block:
         inner = self.block(key)
         grid = inner.grid()
         return grid, inner.array("values", len(grid), low)
+
+
+def merged_grid(*grids: Array) -> Array:
+    """All points of several grids, ascending; points closer than rounding are one."""
+    merged = np.unique(np.concatenate(grids))
+    return merged[np.append(True, np.diff(merged) > 1e-9 * (merged[-1] - merged[0]))]
 
 
 def describe(value: Any) -> str:

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from galerna.turbine.airfoils import merged_grid
-from galerna.turbine.block import Block
 from galerna.turbine.model import Array, Control
+from galerna.turbine.windio.block import Block, merged_grid
 from galerna.units import DEG, RPM
 
 

@@ -11,26 +11,31 @@ from typing import Any
 
 import numpy as np
 
-from galerna.turbine.airfoils import merged_grid
-from galerna.turbine.block import Block
+from galerna.turbine import cross_section
 from galerna.turbine.model import Array, SectionProperties
+from galerna.turbine.windio.block import Block, merged_grid
 
 _COLUMNS = [(f"K{i + 1}{j + 1}", i, j) for i in range(6) for j in range(i, 6)]
 _INERTIA = ("mass", "cm_x", "cm_y", "i_edge", "i_flap", "i_plr", "i_cp")
 _SWAP = [1, 0, 2, 4, 3, 5]  # x and y exchanged
 
 
+def is_complete(elastic: Block) -> bool:
+    """Whether all six stiffnesses are given; 0, windIO's default, means that one is not."""
+    stiffness, inertia = elastic.block("stiffness_matrix"), elastic.block("inertia_matrix")
+    columns = [(stiffness, f"K{i}{i}") for i in range(1, 7)]
+    columns += [(inertia, name) for name in ("mass", "i_edge", "i_flap")]
+    return all(block.has(name) and block.array(name).any() for block, name in columns)
+
+
 def read_sections(elastic: Block) -> tuple[Array, Array, Array, Array]:
-    """Span (n,), stiffness (n,6,6), inertia (n,6,6) and damping (6,) s of one beam, as in the file.
+    """Span (n,), stiffness (n,6,6), inertia (n,6,6) and damping (6,) s, in the file's axes.
 
     Raises InputError where a matrix is not positive definite.
     """
-    stiffness_block, inertia_block = (
-        elastic.block(k) for k in ("stiffness_matrix", "inertia_matrix")
-    )
-    grids = stiffness_block.grid(), inertia_block.grid()
-    stiffness = _stiffness(stiffness_block, grids[0])
-    inertia = _inertia(inertia_block, grids[1])
+    blocks = elastic.block("stiffness_matrix"), elastic.block("inertia_matrix")
+    grids = [block.grid() for block in blocks]
+    stiffness, inertia = _stiffness(blocks[0], grids[0]), _inertia(blocks[1], grids[1])
     span = merged_grid(*grids)
     damping = np.zeros(6)
     if elastic.optional("structural_damping").has("mu"):
@@ -38,52 +43,16 @@ def read_sections(elastic: Block) -> tuple[Array, Array, Array, Array]:
     return span, _resample(span, grids[0], stiffness), _resample(span, grids[1], inertia), damping
 
 
-def inertia_matrix(
-    mass: Array, cm_x: Array, cm_y: Array, edge: Array, flap: Array, polar: Array, cross: Array
-) -> Array:
-    """Section inertia (n,6,6) about the reference axis from (n,) columns, as in BeamDyn.
-
-    mass kg/m; centre of mass m; ``edge`` and ``flap`` kg m about x and y; ``polar`` about
-    z; ``cross`` the product of inertia. Source: BeamDyn user's guide, section matrices.
-    """
-    matrix = np.zeros((len(mass), 6, 6))
-    for i in range(3):
-        matrix[:, i, i] = mass
-    matrix[:, 0, 5] = -mass * cm_y
-    matrix[:, 1, 5] = mass * cm_x
-    matrix[:, 2, 3] = mass * cm_y
-    matrix[:, 2, 4] = -mass * cm_x
-    matrix[:, 3, 3], matrix[:, 4, 4], matrix[:, 5, 5] = edge, flap, polar
-    matrix[:, 3, 4] = -cross
-    lower = np.tril_indices(6, -1)
-    matrix[:, lower[0], lower[1]] = matrix[:, lower[1], lower[0]]
-    return matrix
-
-
-def turned(matrix: Array, angle: Array) -> Array:
-    """Section matrices (n,6,6) in axes turned by ``angle`` (n,) rad about +z."""
-    c, s, zero = np.cos(angle), np.sin(angle), np.zeros_like(angle)
-    rotation = np.zeros((len(angle), 6, 6))
-    block = np.array([[c, s, zero], [-s, c, zero], [zero, zero, zero + 1.0]]).transpose(2, 0, 1)
-    rotation[:, :3, :3] = rotation[:, 3:, 3:] = block
-    return rotation @ matrix @ rotation.transpose(0, 2, 1)
-
-
 def edge_is_about_x(span: Array, stiffness: Array) -> bool:
     """Whether bending about x is the stiffer, edgewise one: then x points to the suction side."""
-    body = (span > 0.2) & (span < 0.9)
-    if not body.any():
-        body[:] = True
+    body = _body(span)
     return bool(np.median(stiffness[body, 3, 3] / stiffness[body, 4, 4]) >= 1.0)
 
 
 def mass_center_is_along_y(span: Array, inertia: Array) -> bool:
-    """Whether the mass centre lies further from the axis along y, than along x."""
-    body = (span > 0.2) & (span < 0.9)
-    if not body.any():
-        body[:] = True
-    along_y, along_x = np.abs(inertia[body, 0, 5]), np.abs(inertia[body, 1, 5])
-    return bool(along_y.sum() >= along_x.sum())
+    """Whether the mass centre lies further from the axis along y, as along a chord, than x."""
+    distance = np.abs(cross_section.center_of_mass(inertia[_body(span)])).sum(axis=0)
+    return bool(distance[1] >= distance[0])
 
 
 def exchanged(matrix: Array) -> Array:
@@ -91,27 +60,28 @@ def exchanged(matrix: Array) -> Array:
     return matrix[:, _SWAP][:, :, _SWAP]
 
 
-def section_columns(sections: SectionProperties) -> dict[str, Any]:
-    """windIO's ``elastic_properties`` of a beam, in BeamDyn's axes."""
+def elastic_properties(sections: SectionProperties, twist: Array) -> dict[str, Any]:
+    """windIO's ``elastic_properties`` of a beam, in BeamDyn's axes at the twist (n,) given."""
+    turn = twist - sections.twist  # both positive about -z
+    origin = np.zeros((len(turn), 2))
+    stiffness = cross_section.at_reference(sections.stiffness, origin, turn)
+    matrix = cross_section.at_reference(sections.inertia, origin, turn)
+    center = cross_section.center_of_mass(matrix)
+    columns = (matrix[:, 0, 0], *center.T, *(matrix[:, i, i] for i in (3, 4, 5)), -matrix[:, 3, 4])
     grid = sections.span.tolist()
-    stiffness = {name: sections.stiffness[:, i, j].tolist() for name, i, j in _COLUMNS}
-    matrix = sections.inertia
-    mass = matrix[:, 0, 0]
-    columns = (
-        mass,
-        matrix[:, 1, 5] / mass,
-        matrix[:, 2, 3] / mass,
-        matrix[:, 3, 3],
-        matrix[:, 4, 4],
-        matrix[:, 5, 5],
-        -matrix[:, 3, 4],
-    )
-    inertia = {name: column.tolist() for name, column in zip(_INERTIA, columns, strict=True)}
     return {
-        "stiffness_matrix": {"grid": grid, **stiffness},
-        "inertia_matrix": {"grid": grid, **inertia},
+        "stiffness_matrix": {"grid": grid}
+        | {name: stiffness[:, i, j].tolist() for name, i, j in _COLUMNS},
+        "inertia_matrix": {"grid": list(grid)}
+        | {name: column.tolist() for name, column in zip(_INERTIA, columns, strict=True)},
         "structural_damping": {"mu": sections.damping.tolist()},
     }
+
+
+def _body(span: Array) -> Array:
+    """The stations that look like a blade: neither root nor tip, if there are such."""
+    body = (span > 0.2) & (span < 0.9)
+    return body if body.any() else np.ones_like(body)
 
 
 def _stiffness(block: Block, grid: Array) -> Array:
@@ -124,11 +94,15 @@ def _stiffness(block: Block, grid: Array) -> Array:
 
 
 def _inertia(block: Block, grid: Array) -> Array:
-    n = len(grid)
-    columns = [block.array(k, n) if block.has(k) else np.zeros(n) for k in _INERTIA]
-    if not block.has("i_plr"):
-        columns[5] = columns[3] + columns[4]
-    matrix = inertia_matrix(*columns)
+    columns = {
+        name: block.array(name, len(grid)) if block.has(name) else np.zeros(len(grid))
+        for name in _INERTIA
+    }
+    center = np.stack([columns["cm_x"], columns["cm_y"]], axis=1)
+    moments = np.stack([columns["i_edge"], columns["i_flap"]], axis=1)
+    matrix = cross_section.inertia_matrix(columns["mass"], center, moments, columns["i_cp"])
+    if block.has("i_plr"):
+        matrix[:, 5, 5] = columns["i_plr"]
     _check_positive_definite(block, matrix, grid, "M")
     return matrix
 
@@ -143,7 +117,7 @@ def _check_positive_definite(block: Block, matrix: Array, grid: Array, letter: s
         )
     scale = 1.0 / np.sqrt(diagonal)
     least = np.linalg.eigvalsh(matrix * scale[:, :, None] * scale[:, None, :])[:, 0]
-    if (least <= 0.0).any():
+    if (least < -1e-9).any():  # a thin section may have no inertia of its own
         station = int(np.argmin(least))
         raise block.error(
             f"the 6x6 matrix at span {grid[station]:.4g} is not positive definite",
