@@ -22,10 +22,10 @@ class BemOptions(BaseModel):
     )
     tip_loss: bool = Field(default=True, description="Prandtl's tip loss.")
     root_loss: bool = Field(default=True, description="Prandtl's loss at the blade root.")
-    high_thrust: Literal["buhl", "glauert", "wilson_walker", "none"] = Field(
+    high_thrust: Literal["buhl", "glauert", "wilson_walker"] = Field(
         default="buhl",
-        description="Empirical thrust of the turbulent wake state: Buhl (2005), Glauert's curve "
-        "as given by Hansen (2015), Wilson and Walker's line, or momentum theory alone.",
+        description="Empirical thrust of the turbulent wake state: Buhl (2005), Glauert's "
+        "parabola times the loss factor, or Wilson and Walker's tangent (1984).",
     )
     induction: bool = Field(
         default=True, description="Induced velocities; off is pure blade element."

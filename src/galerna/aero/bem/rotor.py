@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from math import atan2, cos, sin, sqrt
+from math import atan2, cos, pi, sin, sqrt
 from typing import NamedTuple
 
-import numpy as np
 from numba import njit
 
 from galerna.aero.bem import strips as s
@@ -13,6 +12,7 @@ from galerna.aero.bem.dynamic_inflow import advance_inflow, slow_time_constant, 
 from galerna.aero.bem.dynamic_stall import advance_stall, start_stall
 from galerna.aero.bem.momentum import FASTMATH, Momentum, solve_strip
 from galerna.aero.sections import section_coefficients
+from galerna.aero.vectors import Vector, add, axis, combine, cross, dot, put, row, scale, subtract
 from galerna.contract import Array
 
 # What a strip remembers: rows of ``before`` and ``after``.
@@ -23,7 +23,7 @@ LIFT_SHIFT = 15  #: filtered minus unfiltered lift coefficient
 MEMORY_COLUMNS = 16
 
 # What is known of the rotor: ``totals``.
-MEAN_WIND = slice(0, 3)  #: m/s relative to the hub
+MEAN_WIND = 0  #: three columns, m/s relative to the hub
 MEAN_NORMAL_WIND, MEAN_INDUCED = 3, 4  #: m/s along the shaft, m/s
 THRUST, TORQUE = 5, 6  #: N, N m
 ROTOR_SPEED = 7  #: rad/s
@@ -81,22 +81,13 @@ def rotor_loads(
     and the rows of ``force`` N and ``moment`` N m (.,3).
     """
     m = shape.shape[0]
-    hub, shaft = position[m], rotation[m, :, 0]
+    hub, shaft = row(position, m), axis(rotation, m, 0)
     for i in range(m):
         s.place_strip(
-            strips[i],
-            shape[i],
-            points[i],
-            position[i],
-            rotation[i],
-            velocity[i],
-            angular_velocity[i],
-            wind[i],
-            hub,
-            shaft,
+            i, shape, points, rotation, velocity, angular_velocity, wind, hub, shaft, strips
         )
         _balance(rotor, i, table, shape, before, after, strips)
-    _mean_flow(strips, shape, wind, velocity[m], shaft, totals)
+    _mean_flow(strips, shape, wind, row(velocity, m), shaft, totals)
     for i in range(m):
         _induce(rotor, i, before, dt, totals, after, strips)
         _section(rotor, i, table, stall, shape, before, dt, after, strips)
@@ -104,105 +95,104 @@ def rotor_loads(
         _filter_lift(rotor, spanwise, after, strips)
     for i in range(m):
         _load(rotor, i, shape, rotation, strips, force, moment)
-    totals[ROTOR_SPEED] = s.dot(angular_velocity[m], shaft)
-    _total(rotor, position, hub, rotation[m], force, moment, totals)
+    totals[ROTOR_SPEED] = dot(row(angular_velocity, m), shaft)
+    _total(rotor, position, rotation, force, moment, totals)
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
-def _balance(  # type: ignore[no-untyped-def]
-    rotor, i, table, shape, before, after, strips
+def _balance(
+    rotor: Rotor, i: int, table: Array, shape: Array, before: Array, after: Array, strips: Array
 ) -> None:
     """The induced velocity that balances the static load of a strip."""
-    strip, station = strips[i], i % rotor.strips_per_blade
     after[i, LIFT_SHIFT] = 0.0
     if not rotor.induction:
-        strip[s.QUASI_NORMAL] = strip[s.QUASI_SWIRL] = 0.0
-        strip[s.LOSS] = 1.0
+        strips[i, s.QUASI_NORMAL], strips[i, s.QUASI_SWIRL], strips[i, s.LOSS] = 0.0, 0.0, 1.0
         return
     shift = before[i, LIFT_SHIFT] if rotor.spanwise_filter == FILTER_FEEDBACK else 0.0
-    balance = s.strip_balance(strip, shape[i], rotor.momentum.blades, shift)
     angle, induced, swirl, loss, _ = solve_strip(
         before[i, GUESS],
         table,
-        station,
-        strip[s.PITCH],
-        strip[s.NORMAL_WIND],
-        strip[s.TANGENTIAL_WIND],
-        balance,
+        i % rotor.strips_per_blade,
+        strips[i, s.PITCH],
+        strips[i, s.NORMAL_WIND],
+        strips[i, s.TANGENTIAL_WIND],
+        s.strip_balance(i, strips, shape, rotor.momentum.blades, shift),
         rotor.momentum,
     )
     after[i, GUESS] = angle
-    strip[s.QUASI_NORMAL], strip[s.QUASI_SWIRL], strip[s.LOSS] = induced, swirl, loss
+    strips[i, s.QUASI_NORMAL], strips[i, s.QUASI_SWIRL], strips[i, s.LOSS] = induced, swirl, loss
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
-def _mean_flow(strips, shape, wind, hub_velocity, shaft, totals) -> None:  # type: ignore[no-untyped-def]
+def _mean_flow(
+    strips: Array, shape: Array, wind: Array, hub_velocity: Vector, shaft: Vector, totals: Array
+) -> None:
     """Means over the rotor disc of the wind relative to the hub and of the induced velocity."""
-    total, induced = 0.0, 0.0
-    mean = totals[MEAN_WIND]
-    mean[:] = 0.0
+    total, induced, mean = 0.0, 0.0, (0.0, 0.0, 0.0)
     for i in range(shape.shape[0]):
         area = strips[i, s.RADIUS] * shape[i, s.WEIGHT] * strips[i, s.RADIAL]
         total += area
         induced += area * strips[i, s.QUASI_NORMAL] / strips[i, s.CONE]
-        for k in range(3):
-            mean[k] += area * wind[i, k]
-    for k in range(3):
-        mean[k] = mean[k] / total - hub_velocity[k]
-    totals[MEAN_NORMAL_WIND] = s.dot(mean, shaft)
+        mean = combine(1.0, mean, area, row(wind, i))
+    mean = combine(1.0 / total, mean, -1.0, hub_velocity)
+    totals[MEAN_WIND], totals[MEAN_WIND + 1], totals[MEAN_WIND + 2] = mean
+    totals[MEAN_NORMAL_WIND] = dot(mean, shaft)
     totals[MEAN_INDUCED] = induced / total
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
-def _induce(rotor, i, before, dt, totals, after, strips) -> None:  # type: ignore[no-untyped-def]
+def _induce(
+    rotor: Rotor, i: int, before: Array, dt: float, totals: Array, after: Array, strips: Array
+) -> None:
     """The induced velocity that a strip meets: the balanced one, delayed and skewed."""
-    strip = strips[i]
-    normal, swirl = strip[s.QUASI_NORMAL], strip[s.QUASI_SWIRL]
+    normal, swirl = strips[i, s.QUASI_NORMAL], strips[i, s.QUASI_SWIRL]
     if rotor.dynamic_inflow:
+        slow, fast = after[i, NORMAL_LAGS], after[i, SWIRL_LAGS]
         if dt < 0.0:
-            start_inflow(normal, after[i, NORMAL_LAGS])
-            start_inflow(swirl, after[i, SWIRL_LAGS])
+            start_inflow(normal, slow)
+            start_inflow(swirl, fast)
         else:
             wind = totals[MEAN_NORMAL_WIND]
-            fraction = strip[s.RADIUS] / rotor.radius
+            fraction = strips[i, s.RADIUS] / rotor.radius
             induction = totals[MEAN_INDUCED] / wind if abs(wind) > 0.1 else 0.0
             tau = slow_time_constant(wind, induction, rotor.radius)
-            normal = advance_inflow(
-                before[i, NORMAL_LAGS], normal, dt, tau, fraction, after[i, NORMAL_LAGS]
-            )
-            swirl = advance_inflow(
-                before[i, SWIRL_LAGS], swirl, dt, tau, fraction, after[i, SWIRL_LAGS]
-            )
-    strip[s.INDUCED_NORMAL], strip[s.INDUCED_SWIRL] = normal, swirl
+            normal = advance_inflow(before[i, NORMAL_LAGS], normal, dt, tau, fraction, slow)
+            swirl = advance_inflow(before[i, SWIRL_LAGS], swirl, dt, tau, fraction, fast)
+    strips[i, s.INDUCED_NORMAL], strips[i, s.INDUCED_SWIRL] = normal, swirl
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
-def _section(  # type: ignore[no-untyped-def]
-    rotor, i, table, stall, shape, before, dt, after, strips
+def _section(
+    rotor: Rotor,
+    i: int,
+    table: Array,
+    stall: Array,
+    shape: Array,
+    before: Array,
+    dt: float,
+    after: Array,
+    strips: Array,
 ) -> None:
     """Relative velocity, angle of attack and coefficients of a strip."""
-    strip, station, chord = strips[i], i % rotor.strips_per_blade, shape[i, s.CHORD]
-    across = strip[s.NORMAL_WIND] - strip[s.INDUCED_NORMAL]
-    along = strip[s.TANGENTIAL_WIND] + strip[s.INDUCED_SWIRL]
-    strip[s.SPEED] = sqrt(across * across + along * along)
-    strip[s.INFLOW_ANGLE] = atan2(across, along)
-    c, sn = cos(strip[s.PITCH]), sin(strip[s.PITCH])
+    station, chord = i % rotor.strips_per_blade, shape[i, s.CHORD]
+    across = strips[i, s.NORMAL_WIND] - strips[i, s.INDUCED_NORMAL]
+    along = strips[i, s.TANGENTIAL_WIND] + strips[i, s.INDUCED_SWIRL]
+    strips[i, s.SPEED] = sqrt(across * across + along * along)
+    strips[i, s.INFLOW_ANGLE] = atan2(across, along)
+    c, sn = cos(strips[i, s.PITCH]), sin(strips[i, s.PITCH])
     to_suction, to_trailing = across * c - along * sn, across * sn + along * c
-    if rotor.three_quarter_chord:
-        to_suction += 0.5 * chord * strip[s.TURNING]
+    turning = strips[i, s.TURNING] if rotor.three_quarter_chord else 0.0
+    to_suction += 0.5 * chord * turning
     angle = atan2(to_suction, to_trailing)
-    strip[s.ANGLE_OF_ATTACK] = angle
+    strips[i, s.ANGLE_OF_ATTACK] = angle
     if not rotor.unsteady_airfoil:
-        lift, drag, moment = section_coefficients(table, station, angle)
+        coefficients = section_coefficients(table, station, angle)
     else:
-        turning = strip[s.TURNING] if rotor.three_quarter_chord else 0.0
-        start = before[i, STALL]
+        start, end = before[i, STALL], after[i, STALL]
         if dt < 0.0:
-            start_stall(
-                after[i, STALL], table, station, stall, chord, to_suction, to_trailing, turning
-            )
-            start = after[i, STALL].copy()
-        lift, drag, moment = advance_stall(
+            start_stall(end, table, station, stall, chord, to_suction, to_trailing, turning)
+            start = end.copy()
+        coefficients = advance_stall(
             start,
             table,
             station,
@@ -212,13 +202,13 @@ def _section(  # type: ignore[no-untyped-def]
             to_trailing,
             turning,
             max(dt, 0.0),
-            after[i, STALL],
+            end,
         )
-    strip[s.LIFT], strip[s.DRAG], strip[s.MOMENT] = lift, drag, moment
+    strips[i, s.LIFT], strips[i, s.DRAG], strips[i, s.MOMENT] = coefficients
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
-def _filter_lift(rotor, spanwise, after, strips) -> None:  # type: ignore[no-untyped-def]
+def _filter_lift(rotor: Rotor, spanwise: Array, after: Array, strips: Array) -> None:
     """Let neighbouring sections of a blade share their lift."""
     n = rotor.strips_per_blade
     for first in range(0, strips.shape[0], n):
@@ -232,66 +222,59 @@ def _filter_lift(rotor, spanwise, after, strips) -> None:  # type: ignore[no-unt
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
-def _load(rotor, i, shape, rotation, strips, force, moment) -> None:  # type: ignore[no-untyped-def]
+def _load(
+    rotor: Rotor, i: int, shape: Array, rotation: Array, strips: Array, force: Array, moment: Array
+) -> None:
     """Lump a strip's force and moment on its station's frame."""
-    strip = strips[i]
     at_end = min(shape[i, s.TO_TIP], shape[i, s.TO_ROOT]) <= 0.0
     if rotor.ends_unloaded and at_end:  # the loss factor is zero there, and so is the lift
-        strip[s.LIFT] = strip[s.DRAG] = strip[s.MOMENT] = 0.0
-    pressure = 0.5 * rotor.air_density * strip[s.SPEED] ** 2 * shape[i, s.CHORD]
-    c, sn = cos(strip[s.INFLOW_ANGLE]), sin(strip[s.INFLOW_ANGLE])
-    normal = pressure * (strip[s.LIFT] * c + strip[s.DRAG] * sn)
-    tangential = pressure * (strip[s.LIFT] * sn - strip[s.DRAG] * c)
-    strip[s.NORMAL_FORCE], strip[s.TANGENTIAL_FORCE] = normal, tangential
-    weight = shape[i, s.WEIGHT]
-    twisting = pressure * shape[i, s.CHORD] * strip[s.MOMENT] * weight
-    across, against = strip[s.NORMAL], strip[s.TANGENT]
-    axes = rotation[i]
-    arm = np.empty(3)
-    for k in range(3):
-        force[i, k] = weight * (normal * across[k] - tangential * against[k])
-        arm[k] = (
-            axes[k, 0] * shape[i, s.CENTER_X]
-            + axes[k, 1] * shape[i, s.CENTER_Y]
-            + axes[k, 2] * shape[i, s.OFFSET]
-        )
-    for k in range(3):
-        a, b = (k + 1) % 3, (k + 2) % 3
-        moment[i, k] = arm[a] * force[i, b] - arm[b] * force[i, a] + twisting * axes[k, 2]
+        strips[i, s.LIFT], strips[i, s.DRAG], strips[i, s.MOMENT] = 0.0, 0.0, 0.0
+    chord, weight = shape[i, s.CHORD], shape[i, s.WEIGHT]
+    pressure = 0.5 * rotor.air_density * strips[i, s.SPEED] ** 2 * chord
+    c, sn = cos(strips[i, s.INFLOW_ANGLE]), sin(strips[i, s.INFLOW_ANGLE])
+    normal = pressure * (strips[i, s.LIFT] * c + strips[i, s.DRAG] * sn)
+    tangential = pressure * (strips[i, s.LIFT] * sn - strips[i, s.DRAG] * c)
+    strips[i, s.NORMAL_FORCE], strips[i, s.TANGENTIAL_FORCE] = normal, tangential
+    across, against = s.vector(strips, i, s.NORMAL), s.vector(strips, i, s.TANGENT)
+    lumped = combine(weight * normal, across, -weight * tangential, against)
+    span = axis(rotation, i, 2)
+    lever = combine(1.0, s.arm(rotation, shape, i), shape[i, s.OFFSET], span)
+    twisting = pressure * chord * strips[i, s.MOMENT] * weight
+    put(force, i, lumped)
+    put(moment, i, combine(1.0, cross(lever, lumped), twisting, span))
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
-def _total(  # type: ignore[no-untyped-def]
-    rotor, position, hub, hub_axes, force, moment, totals
+def _total(
+    rotor: Rotor, position: Array, rotation: Array, force: Array, moment: Array, totals: Array
 ) -> None:
     """Thrust along the shaft, torque about it and the moments at the blades' roots.
 
     The root axes cone with the blade and do not pitch: x downwind, y in the rotor plane.
     """
-    n = rotor.strips_per_blade
-    shaft = hub_axes[:, 0]
+    n, blades = rotor.strips_per_blade, int(rotor.momentum.blades)
+    m = n * blades
+    hub = row(position, m)
+    shaft, left, up = axis(rotation, m, 0), axis(rotation, m, 1), axis(rotation, m, 2)
+    c, sn = cos(rotor.cone), sin(rotor.cone)
     thrust, torque = 0.0, 0.0
-    root, across, about = np.empty(3), np.empty(3), np.empty(3)
-    for blade in range(int(rotor.momentum.blades)):
-        turn = 2.0 * np.pi * blade / rotor.momentum.blades
-        in_plane, out_of_plane = 0.0, 0.0
-        for k in range(3):
-            outwards = cos(turn) * hub_axes[k, 2] - sin(turn) * hub_axes[k, 1]
-            across[k] = cos(turn) * hub_axes[k, 1] + sin(turn) * hub_axes[k, 2]
-            about[k] = cos(rotor.cone) * shaft[k] + sin(rotor.cone) * outwards
-            root[k] = rotor.hub_radius * (cos(rotor.cone) * outwards - sin(rotor.cone) * shaft[k])
+    for blade in range(blades):
+        turn = 2.0 * pi * blade / blades
+        outwards = combine(cos(turn), up, -sin(turn), left)
+        across = combine(cos(turn), left, sin(turn), up)
+        about = combine(c, shaft, sn, outwards)
+        root = scale(rotor.hub_radius, combine(c, outwards, -sn, shaft))
+        total, total_moment = (0.0, 0.0, 0.0), (0.0, 0.0, 0.0)
         for i in range(blade * n, (blade + 1) * n):
-            for k in range(3):
-                a, b = (k + 1) % 3, (k + 2) % 3
-                x, y = position[i, a] - hub[a], position[i, b] - hub[b]
-                at_hub = moment[i, k] + x * force[i, b] - y * force[i, a]
-                at_root = at_hub - root[a] * force[i, b] + root[b] * force[i, a]
-                thrust += force[i, k] * shaft[k]
-                torque += at_hub * shaft[k]
-                in_plane += at_root * about[k]
-                out_of_plane += at_root * across[k]
-        totals[ROOT_MOMENTS + 2 * blade] = in_plane
-        totals[ROOT_MOMENTS + 2 * blade + 1] = out_of_plane
+            lumped = row(force, i)
+            lever = subtract(row(position, i), hub)
+            total = add(total, lumped)
+            total_moment = add(total_moment, add(row(moment, i), cross(lever, lumped)))
+        thrust += dot(total, shaft)
+        torque += dot(total_moment, shaft)
+        at_root = subtract(total_moment, cross(root, total))
+        totals[ROOT_MOMENTS + 2 * blade] = dot(at_root, about)
+        totals[ROOT_MOMENTS + 2 * blade + 1] = dot(at_root, across)
     totals[THRUST], totals[TORQUE] = thrust, torque
 
 
