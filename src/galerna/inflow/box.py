@@ -80,7 +80,9 @@ class Box:
             if block is None:
                 continue
             block = np.ascontiguousarray(block, dtype=np.float32)
-            if not math.isfinite(float(block.sum(dtype=np.float64))):
+            with np.errstate(invalid="ignore"):
+                total = float(block.sum(dtype=np.float64))  # one pass that no NaN survives
+            if not math.isfinite(total):
                 raise InputError(self.source, "holds velocities that are not finite numbers")
             object.__setattr__(self, name, block)
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from galerna.errors import InputError
 from galerna.inflow import gusts
 from galerna.inflow import options as o
@@ -108,13 +110,12 @@ def _mean_wind(options: o.InflowOptions, site: Site) -> tuple[Course, Profile, f
 
 
 def _series(figures: o.WindOverTime) -> TimeSeries:
-    angles = {"direction": figures.direction_deg, "upflow": figures.upflow_deg}
-    given = {
-        name: [value * DEG for value in values]
-        for name, values in angles.items()
-        if values is not None
-    }
-    return TimeSeries(figures.time_s, speed=figures.wind_speed_m_s, **given)
+    return TimeSeries(
+        figures.time_s,
+        speed=figures.wind_speed_m_s,
+        direction=np.multiply(figures.direction_deg or 0.0, DEG),
+        upflow=np.multiply(figures.upflow_deg or 0.0, DEG),
+    )
 
 
 def _profile(options: o.InflowOptions, hub_height: float) -> Profile:

@@ -105,12 +105,13 @@ class TimeSeries:
     Raises InputError for times out of order, lengths that differ, NaN.
     """
 
-    def __init__(self, time: ArrayLike, **fields: ArrayLike) -> None:
-        self._time = _finite("time", time)
+    def __init__(
+        self, time: ArrayLike, *, source: str = "wind time series", **fields: ArrayLike
+    ) -> None:
+        self._source = source
+        self._time = self._finite("time", time)
         if self._time.ndim != 1 or len(self._time) < 2 or np.any(np.diff(self._time) <= 0.0):
-            raise InputError(
-                "wind time series", "times must be two or more, each later than the last"
-            )
+            raise InputError(source, "times must be two or more, each later than the last")
         columns = {name: self._column(name, values) for name, values in fields.items()}
         columns["direction"] = np.unwrap(columns.get("direction", np.zeros_like(self._time)))
         rows = zip(*columns.values(), strict=True)
@@ -118,11 +119,17 @@ class TimeSeries:
         self._rows = [HubWind(**dict(zip(columns, map(float, row), strict=True))) for row in rows]
 
     def _column(self, name: str, values: ArrayLike) -> Array:
-        column = _finite(name, values)
+        column = self._finite(name, values)
         if column.shape not in ((), self._time.shape):
             what = f"{name} has {column.size} values for {len(self._time)} times"
-            raise InputError("wind time series", what)
+            raise InputError(self._source, what)
         return np.broadcast_to(column, self._time.shape)
+
+    def _finite(self, name: str, values: ArrayLike) -> Array:
+        column = np.asarray(values, dtype=np.float64)
+        if not math.isfinite(float(column.sum())):
+            raise InputError(self._source, f"{name} holds values that are not finite numbers")
+        return column
 
     @property
     def end(self) -> float:
@@ -134,7 +141,7 @@ class TimeSeries:
         fields = dict(zip(HubWind._fields, np.array(self._rows).T, strict=True))
         fields["direction"] = fields["direction"] + direction
         fields["upflow"] = fields["upflow"] + upflow
-        return TimeSeries(self._time, **fields)
+        return TimeSeries(self._time, source=self._source, **fields)
 
     def mean_speed(self, duration: float) -> float:
         """Mean of the speed m/s from time 0 to ``duration`` s."""
@@ -154,10 +161,3 @@ class TimeSeries:
         s = (time - t0) / (t1 - t0)
         pairs = zip(self._rows[after - 1], self._rows[after], strict=True)
         return HubWind(*[a + s * (b - a) for a, b in pairs])
-
-
-def _finite(name: str, values: ArrayLike) -> Array:
-    column = np.asarray(values, dtype=np.float64)
-    if not math.isfinite(float(column.sum())):
-        raise InputError("wind time series", f"{name} holds values that are not finite numbers")
-    return column

@@ -32,6 +32,7 @@ def read_uniform(path: Path | str, reference_length: float) -> tuple[TimeSeries,
         raise InputError(str(path), "the power-law exponent changes over time, which is not read")
     series = TimeSeries(
         time,
+        source=str(path),
         speed=speed,
         direction=-direction * DEG,
         upflow=upflow * DEG,
