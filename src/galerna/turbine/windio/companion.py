@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from galerna.errors import did_you_mean
+from galerna.turbine.model import Platform, Published
 from galerna.turbine.windio import yamlfile
 from galerna.turbine.windio.block import Block
-from galerna.turbine.model import Platform, Published
 
 #: What a companion may say of each part, and how many numbers it takes (0: one number).
 PROPERTIES: dict[str, dict[str, int]] = {

@@ -10,6 +10,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from galerna.turbine import cross_section
 from galerna.turbine.model import Array, SectionProperties
@@ -78,10 +79,10 @@ def elastic_properties(sections: SectionProperties, twist: Array) -> dict[str, A
     }
 
 
-def _body(span: Array) -> Array:
+def _body(span: Array) -> NDArray[np.intp]:
     """The stations that look like a blade: neither root nor tip, if there are such."""
-    body = (span > 0.2) & (span < 0.9)
-    return body if body.any() else np.ones_like(body)
+    body = np.flatnonzero((span > 0.2) & (span < 0.9))
+    return body if len(body) else np.arange(len(span))
 
 
 def _stiffness(block: Block, grid: Array) -> Array:

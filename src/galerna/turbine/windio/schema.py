@@ -1,4 +1,4 @@
-"""Hold a document against the windIO package's own turbine schema, and say clearly what is wrong."""
+"""Hold a document against the windIO package's turbine schema, and say clearly what is wrong."""
 
 from __future__ import annotations
 
