@@ -63,7 +63,7 @@ def mann_box(
     turbulence_intensity: float | None = None,
     normalise: Normalisation = "theory",
     high_frequency_compensation: bool = True,
-    periodic_laterally: bool = False,
+    lateral_period: float = 2.0,
 ) -> Box:
     """A box of fluctuations with (nx, ny, nz) points, ``spacing`` m apart, periodic along x.
 
@@ -71,9 +71,10 @@ def mann_box(
     deviation of u in m/s, or the turbulence intensity (its ratio to ``mean_speed``);
     ``Normalisation`` tells of what the deviation is meant. Its mean over x is zero at
     every (y, z). With ``high_frequency_compensation`` the box holds the wind at points,
-    without it the mean over cells of the grid. Unless ``periodic_laterally``, twice the
-    width and height are made and the rest is dropped. The seed alone decides the numbers.
-    Raises InputError if an argument makes no sense. Mann (1998).
+    without it the mean over cells of the grid. The modes have a period over y and z of
+    ``lateral_period`` times the box: with 1 its opposite sides are alike; a longer one
+    costs time, not memory, and serves the coherence of far points at low k1.
+    The seed alone decides the numbers. Raises InputError if an argument makes no sense.
     """
     where = "Mann box"
     require_grid(where, shape, spacing)
@@ -88,6 +89,8 @@ def mann_box(
     require_one(where, **amounts)
     require_positive(where, **{name: x for name, x in amounts.items() if x is not None})
     require_name(where, "normalise", normalise, NORMALISATIONS)
+    if not 1.0 <= lateral_period < math.inf:
+        raise InputError(where, f"lateral period is {lateral_period:g}, expected 1 or more")
 
     modes = _lateral_modes(
         shape,
@@ -95,7 +98,7 @@ def mann_box(
         length_scale,
         shear_parameter,
         high_frequency_compensation,
-        periodic_laterally,
+        lateral_period,
     )
     spectrum, expected = _half_spectrum(shape, modes, random_generator(seed))
     data = to_space(spectrum, shape[0])
@@ -115,10 +118,10 @@ def _lateral_modes(
     length_scale: float,
     shear_parameter: float,
     point_values: bool,
-    periodic: bool,
+    period: float,
 ) -> LateralModes:
     """The modes over y and z, in length scales."""
-    ny, nz = shape[1:] if periodic else (fft.next_fast_len(2 * n) for n in shape[1:])
+    ny, nz = (n if period == 1.0 else fft.next_fast_len(math.ceil(period * n)) for n in shape[1:])
     dx, dy, dz = (d / length_scale for d in spacing)
     return LateralModes((ny, nz), (ny * dy, nz * dz), (dx, dy, dz), shear_parameter, point_values)
 

@@ -6,7 +6,8 @@ each: the modes of one k1 then hold the whole one-point spectrum at k1, however
 narrow the box, and the coherence at a distance r keeps the share
 sin(pi r/W)/(pi r/W) of the first period W, with its images making up for what a
 long correlation loses. Mann (1998) section 4 has the same idea with sinc^2 in
-place of the cell.
+place of the cell. What a cell cannot hold is the phase between heights where k1 is
+below its width: there the lean of the eddies is lost.
 """
 
 from __future__ import annotations
