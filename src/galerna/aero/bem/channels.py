@@ -87,7 +87,7 @@ def _ratio(induced: float, undisturbed: float) -> float:
 
 
 def record(rotor: r.Rotor, strips: Array, totals: Array) -> Mapping[str, float | Array]:
-    """Every channel's value from the strip table (m,29) and the totals of one evaluation."""
+    """Every channel's value from the strip table (m,27) and the totals of one evaluation."""
     blades = int(rotor.momentum.blades)
     along = np.empty((len(STRIP_CHANNELS), len(strips)))
     _fill(strips, along)
@@ -104,7 +104,7 @@ def record(rotor: r.Rotor, strips: Array, totals: Array) -> Mapping[str, float |
 
 def _rotor_values(rotor: r.Rotor, totals: list[float]) -> dict[str, float | Array]:
     wind, speed, thrust, torque = (
-        totals[r.MEAN_NORMAL_WIND],
+        totals[r.MEAN_WIND],
         totals[r.ROTOR_SPEED],
         totals[r.THRUST],
         totals[r.TORQUE],

@@ -185,6 +185,7 @@ def rotor_settings(
         strips_per_blade=strips_per_blade,
         momentum=Momentum.of(options, turbine.number_of_blades),
         induction=options.induction,
+        skewed_wake=("none", "pitt_peters", "vortex_cylinder").index(options.skewed_wake),
         dynamic_inflow=options.has_dynamic_inflow,
         unsteady_airfoil=options.has_unsteady_airfoil,
         three_quarter_chord=options.angle_of_attack_point == "three_quarter_chord",

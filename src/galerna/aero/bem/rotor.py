@@ -11,6 +11,12 @@ from galerna.aero.bem import strips as s
 from galerna.aero.bem.dynamic_inflow import advance_inflow, slow_time_constant, start_inflow
 from galerna.aero.bem.dynamic_stall import advance_stall, start_stall
 from galerna.aero.bem.momentum import FASTMATH, Momentum, solve_strip
+from galerna.aero.bem.skewed_wake import (
+    half_skew_tangent,
+    pitt_peters,
+    skew_position,
+    vortex_cylinder,
+)
 from galerna.aero.sections import section_coefficients
 from galerna.aero.vectors import Vector, add, axis, combine, cross, dot, put, row, scale, subtract
 from galerna.contract import Array
@@ -23,8 +29,9 @@ LIFT_SHIFT = 15  #: filtered minus unfiltered lift coefficient
 MEMORY_COLUMNS = 16
 
 # What is known of the rotor: ``totals``.
-MEAN_WIND = 0  #: three columns, m/s relative to the hub
-MEAN_NORMAL_WIND, MEAN_INDUCED = 3, 4  #: m/s along the shaft, m/s
+MEAN_WIND = 0  #: m/s relative to the hub, in its axes; three columns
+MEAN_INDUCED = 3  #: m/s along the shaft
+SKEW = 4  #: tan(chi/2) of the wake
 THRUST, TORQUE = 5, 6  #: N, N m
 ROTOR_SPEED = 7  #: rad/s
 ROOT_MOMENTS = 8  #: in-plane and out-of-plane moment of each blade at its root, N m
@@ -32,6 +39,8 @@ ROOT_MOMENTS = 8  #: in-plane and out-of-plane moment of each blade at its root,
 SEEN_COLUMNS = 19  #: of a frame: position, rotation, velocity, angular velocity, time
 
 FILTER_OFF, FILTER_LOADS, FILTER_FEEDBACK = 0, 1, 2
+NO_SKEW, PITT_PETERS, VORTEX_CYLINDER = 0, 1, 2
+CALM = 0.1  #: m/s, below which a ratio to the wind means nothing
 
 
 class Rotor(NamedTuple):
@@ -44,6 +53,7 @@ class Rotor(NamedTuple):
     strips_per_blade: int
     momentum: Momentum
     induction: bool
+    skewed_wake: int
     dynamic_inflow: bool
     unsteady_airfoil: bool
     three_quarter_chord: bool
@@ -77,7 +87,7 @@ def rotor_loads(
     In: ``points`` and ``wind`` (m,3) at the aerodynamic centres, the frames, ``shape`` (m,7),
     ``table`` (n,k,5) and ``stall`` (n,9) of the n stations of a blade, ``spanwise`` (n,n), the
     strips' memories ``before`` (m,16) and the step ``dt`` s; a negative one means that the
-    present state has lasted for ever. Out: ``after`` (m,16), ``strips`` (m,29), ``totals`` (8 + 2B)
+    present state has lasted for ever. Out: ``after`` (m,16), ``strips`` (m,27), ``totals`` (8 + 2B)
     and the rows of ``force`` N and ``moment`` N m (.,3).
     """
     m = shape.shape[0]
@@ -87,9 +97,15 @@ def rotor_loads(
             i, shape, points, rotation, velocity, angular_velocity, wind, hub, shaft, strips
         )
         _balance(rotor, i, table, shape, before, after, strips)
-    _mean_flow(strips, shape, wind, row(velocity, m), shaft, totals)
+    _mean_wind(strips, shape, wind, row(velocity, m), rotation, totals)
+    _mean_induced(strips, shape, totals)
+    if rotor.dynamic_inflow:
+        for i in range(m):
+            _delay(rotor, i, before, dt, totals, after, strips)
+        _mean_induced(strips, shape, totals)
     for i in range(m):
-        _induce(rotor, i, before, dt, totals, after, strips)
+        if rotor.skewed_wake != NO_SKEW:
+            _skew(rotor, i, rotation, totals, strips)
         _section(rotor, i, table, stall, shape, before, dt, after, strips)
     if rotor.spanwise_filter != FILTER_OFF:
         _filter_lift(rotor, spanwise, after, strips)
@@ -106,7 +122,7 @@ def _balance(
     """The induced velocity that balances the static load of a strip."""
     after[i, LIFT_SHIFT] = 0.0
     if not rotor.induction:
-        strips[i, s.QUASI_NORMAL], strips[i, s.QUASI_SWIRL], strips[i, s.LOSS] = 0.0, 0.0, 1.0
+        strips[i, s.INDUCED_NORMAL], strips[i, s.INDUCED_SWIRL], strips[i, s.LOSS] = 0.0, 0.0, 1.0
         return
     shift = before[i, LIFT_SHIFT] if rotor.spanwise_filter == FILTER_FEEDBACK else 0.0
     angle, induced, swirl, loss, _ = solve_strip(
@@ -120,45 +136,81 @@ def _balance(
         rotor.momentum,
     )
     after[i, GUESS] = angle
-    strips[i, s.QUASI_NORMAL], strips[i, s.QUASI_SWIRL], strips[i, s.LOSS] = induced, swirl, loss
+    strips[i, s.INDUCED_NORMAL], strips[i, s.INDUCED_SWIRL], strips[i, s.LOSS] = (
+        induced,
+        swirl,
+        loss,
+    )
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
-def _mean_flow(
-    strips: Array, shape: Array, wind: Array, hub_velocity: Vector, shaft: Vector, totals: Array
+def _mean_wind(
+    strips: Array, shape: Array, wind: Array, hub_velocity: Vector, rotation: Array, totals: Array
 ) -> None:
-    """Means over the rotor disc of the wind relative to the hub and of the induced velocity."""
-    total, induced, mean = 0.0, 0.0, (0.0, 0.0, 0.0)
+    """Mean over the rotor disc of the wind relative to the hub, in the hub's axes."""
+    m = shape.shape[0]
+    total, mean = 0.0, (0.0, 0.0, 0.0)
+    for i in range(m):
+        area = strips[i, s.RADIUS] * shape[i, s.WEIGHT] * strips[i, s.RADIAL]
+        total += area
+        mean = combine(1.0, mean, area, row(wind, i))
+    mean = combine(1.0 / total, mean, -1.0, hub_velocity)
+    for k in range(3):
+        totals[MEAN_WIND + k] = dot(mean, axis(rotation, m, k))
+
+
+@njit(cache=True, error_model="numpy", fastmath=FASTMATH)
+def _mean_induced(strips: Array, shape: Array, totals: Array) -> None:
+    """Mean over the rotor disc of the axial induced velocity, and the wake's skew from it."""
+    total, induced = 0.0, 0.0
     for i in range(shape.shape[0]):
         area = strips[i, s.RADIUS] * shape[i, s.WEIGHT] * strips[i, s.RADIAL]
         total += area
-        induced += area * strips[i, s.QUASI_NORMAL] / strips[i, s.CONE]
-        mean = combine(1.0, mean, area, row(wind, i))
-    mean = combine(1.0 / total, mean, -1.0, hub_velocity)
-    totals[MEAN_WIND], totals[MEAN_WIND + 1], totals[MEAN_WIND + 2] = mean
-    totals[MEAN_NORMAL_WIND] = dot(mean, shaft)
+        induced += area * strips[i, s.INDUCED_NORMAL] / strips[i, s.CONE]
     totals[MEAN_INDUCED] = induced / total
+    in_plane = sqrt(totals[MEAN_WIND + 1] ** 2 + totals[MEAN_WIND + 2] ** 2)
+    totals[SKEW] = half_skew_tangent(totals[MEAN_WIND], in_plane, totals[MEAN_INDUCED])
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
-def _induce(
+def _delay(
     rotor: Rotor, i: int, before: Array, dt: float, totals: Array, after: Array, strips: Array
 ) -> None:
-    """The induced velocity that a strip meets: the balanced one, delayed and skewed."""
-    normal, swirl = strips[i, s.QUASI_NORMAL], strips[i, s.QUASI_SWIRL]
-    if rotor.dynamic_inflow:
-        slow, fast = after[i, NORMAL_LAGS], after[i, SWIRL_LAGS]
-        if dt < 0.0:
-            start_inflow(normal, slow)
-            start_inflow(swirl, fast)
-        else:
-            wind = totals[MEAN_NORMAL_WIND]
-            fraction = strips[i, s.RADIUS] / rotor.radius
-            induction = totals[MEAN_INDUCED] / wind if abs(wind) > 0.1 else 0.0
-            tau = slow_time_constant(wind, induction, rotor.radius)
-            normal = advance_inflow(before[i, NORMAL_LAGS], normal, dt, tau, fraction, slow)
-            swirl = advance_inflow(before[i, SWIRL_LAGS], swirl, dt, tau, fraction, fast)
-    strips[i, s.INDUCED_NORMAL], strips[i, s.INDUCED_SWIRL] = normal, swirl
+    """Let the induced velocity of a strip follow its balance with the wake's delay."""
+    normal, swirl = strips[i, s.INDUCED_NORMAL], strips[i, s.INDUCED_SWIRL]
+    normal_lags, swirl_lags = after[i, NORMAL_LAGS], after[i, SWIRL_LAGS]
+    if dt < 0.0:
+        start_inflow(normal, normal_lags)
+        start_inflow(swirl, swirl_lags)
+        return
+    wind, fraction = totals[MEAN_WIND], strips[i, s.RADIUS] / rotor.radius
+    induction = totals[MEAN_INDUCED] / wind if abs(wind) > CALM else 0.0
+    tau = slow_time_constant(wind, induction, rotor.radius)
+    strips[i, s.INDUCED_NORMAL] = advance_inflow(
+        before[i, NORMAL_LAGS], normal, dt, tau, fraction, normal_lags
+    )
+    strips[i, s.INDUCED_SWIRL] = advance_inflow(
+        before[i, SWIRL_LAGS], swirl, dt, tau, fraction, swirl_lags
+    )
+
+
+@njit(cache=True, error_model="numpy", fastmath=FASTMATH)
+def _skew(rotor: Rotor, i: int, rotation: Array, totals: Array, strips: Array) -> None:
+    """Vary the induced velocity of a strip over the turn where the wake leaves askew."""
+    hub, outwards = strips.shape[0], s.vector(strips, i, s.OUTWARDS)
+    cos_delta, sin_delta = skew_position(
+        totals[MEAN_WIND + 1],
+        totals[MEAN_WIND + 2],
+        dot(outwards, axis(rotation, hub, 1)),
+        dot(outwards, axis(rotation, hub, 2)),
+    )
+    cone, fraction = strips[i, s.CONE], strips[i, s.RADIUS] / rotor.radius
+    axial, swirl = strips[i, s.INDUCED_NORMAL] / cone, strips[i, s.INDUCED_SWIRL]
+    if rotor.skewed_wake == PITT_PETERS:
+        axial, swirl = pitt_peters(axial, swirl, fraction, totals[SKEW], cos_delta)
+    else:
+        axial, swirl = vortex_cylinder(axial, swirl, fraction, totals[SKEW], cos_delta, sin_delta)
+    strips[i, s.INDUCED_NORMAL], strips[i, s.INDUCED_SWIRL] = axial * cone, swirl
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)

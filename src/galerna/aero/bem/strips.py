@@ -36,14 +36,13 @@ NORMAL = 7  #: unit vector across the span, as near the shaft as it can be
 TANGENT = 10  #: unit vector in the rotor plane, against the rotation
 OUTWARDS = 13  #: unit vector from the shaft axis to the strip
 LOSS = 16  #: Prandtl's factor
-QUASI_NORMAL, QUASI_SWIRL = 17, 18  #: induced velocity in balance with the loads, m/s
-INDUCED_NORMAL, INDUCED_SWIRL = 19, 20  #: induced velocity that the strip meets, m/s
-SPEED = 21  #: relative speed, m/s
-INFLOW_ANGLE = 22  #: rad
-ANGLE_OF_ATTACK = 23  #: rad, at the point that the options name
-LIFT, DRAG, MOMENT = 24, 25, 26  #: coefficients
-NORMAL_FORCE, TANGENTIAL_FORCE = 27, 28  #: N/m along NORMAL and against TANGENT
-STRIP_COLUMNS = 29
+INDUCED_NORMAL, INDUCED_SWIRL = 17, 18  #: induced velocity against the wind and swirl, m/s
+SPEED = 19  #: relative speed, m/s
+INFLOW_ANGLE = 20  #: rad
+ANGLE_OF_ATTACK = 21  #: rad, at the point that the options name
+LIFT, DRAG, MOMENT = 22, 23, 24  #: coefficients
+NORMAL_FORCE, TANGENTIAL_FORCE = 25, 26  #: N/m along NORMAL and against TANGENT
+STRIP_COLUMNS = 27
 
 
 @njit(cache=True)
