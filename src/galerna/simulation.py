@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Protocol
 
 import numpy as np
@@ -21,14 +21,25 @@ class Stateful(Protocol):
     def restore(self, state: Mapping[str, np.ndarray]) -> None: ...
 
 
-class Part(Protocol):
-    """Whatever has channels to show: a structure, a load model, a wind probe."""
+class Described(Protocol):
+    """Whatever has channels to show."""
 
     @property
     def channels(self) -> tuple[Channel, ...]: ...
     @property
     def coordinates(self) -> Mapping[str, Array]: ...
+
+
+class Part(Described, Protocol):
+    """A part of the machine, with the channels of its accepted state."""
+
     def record(self) -> Mapping[str, float | Array]: ...
+
+
+class Probe(Described, Protocol):
+    """What is measured beside the machine, at a time in s."""
+
+    def record(self, time: float) -> Mapping[str, float | Array]: ...
 
 
 class Structure(Part, Stateful, Protocol):
@@ -77,7 +88,7 @@ class Simulation:
         load_models: Mapping[str, LoadModel],
         time_step: float,
         *,
-        probes: Mapping[str, Part] | None = None,
+        probes: Mapping[str, Probe] | None = None,
         iterations: int = 30,
         halvings: int = 3,
     ) -> None:
@@ -86,11 +97,8 @@ class Simulation:
         self.iterations, self.halvings = iterations, halvings
         self.steps = 0  #: accepted so far
         self.stopped = ""  #: why the run is to end early
-        self._parts: dict[str, Part] = {
-            "structure": structure,
-            **self.load_models,
-            **(probes or {}),
-        }
+        self.probes = dict(probes or {})
+        self._parts: dict[str, Part] = {"structure": structure, **self.load_models}
         self._stateful: dict[str, Stateful] = {"structure": structure, **self.load_models}
         self._models = tuple(
             (name, model, motion)
@@ -132,7 +140,12 @@ class Simulation:
 
     def record(self) -> Record:
         """Every channel of the accepted state."""
-        return {name: value for p in self._parts.values() for name, value in p.record().items()}
+        values: Record = {}
+        for part in self._parts.values():
+            values.update(part.record())
+        for probe in self.probes.values():
+            values.update(probe.record(self.time))
+        return values
 
     def state(self) -> dict[str, np.ndarray]:
         """Everything that the next step depends on, by ``part/name``."""
@@ -195,19 +208,23 @@ class Simulation:
                 permitted = f"{name} permits at most {model.largest_step:.4g} s"
                 raise InputError("time_step_s", f"{self.time_step:.4g} s is too large: {permitted}")
 
+    def _described(self) -> Iterator[tuple[str, Described]]:
+        yield from self._parts.items()
+        yield from self.probes.items()
+
     def _unique_channels(self) -> tuple[Channel, ...]:
         owners: dict[str, str] = {}
-        for part, owner in ((p, name) for name, p in self._parts.items()):
+        for owner, part in self._described():
             for channel in part.channels:
                 if channel.name in owners:
                     both = f"{owners[channel.name]} and {owner}"
                     raise InputError("channels", f"{both} both have a channel {channel.name!r}")
                 owners[channel.name] = owner
-        return tuple(c for part in self._parts.values() for c in part.channels)
+        return tuple(channel for _, part in self._described() for channel in part.channels)
 
     def _common_coordinates(self) -> dict[str, Array]:
         common: dict[str, Array] = {}
-        for owner, part in self._parts.items():
+        for owner, part in self._described():
             for name, values in part.coordinates.items():
                 if name in common and not np.array_equal(common[name], values):
                     raise InputError("channels", f"{owner} has a coordinate {name!r} of its own")

@@ -1,0 +1,242 @@
+"""The publications behind the models and the data that a case uses."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from galerna.case import Case
+
+
+@dataclass(frozen=True)
+class Reference:
+    """One publication; ``venue`` is journal, volume and pages, or institution and number."""
+
+    key: str
+    authors: str
+    year: int
+    title: str
+    venue: str
+    doi: str = ""
+    kind: str = "article"
+
+    @property
+    def text(self) -> str:
+        """The reference in one line."""
+        end = f" doi:{self.doi}" if self.doi else ""
+        return f"{self.authors} ({self.year}): {self.title}. {self.venue}.{end}"
+
+    @property
+    def bibtex(self) -> str:
+        """The reference as a BibTeX entry."""
+        venue = {"article": "journal", "book": "publisher"}.get(self.kind, "institution")
+        fields = {
+            "author": self.authors.replace(", ", " and "),
+            "title": f"{{{self.title}}}",
+            "year": str(self.year),
+            venue: self.venue,
+            "doi": self.doi,
+        }
+        body = ",\n".join(f"  {name} = {{{value}}}" for name, value in fields.items() if value)
+        return f"@{self.kind}{{{self.key},\n{body}\n}}"
+
+
+_NING = Reference(
+    "Ning2014",
+    "S. A. Ning",
+    2014,
+    "A simple solution method for the blade element momentum equations with guaranteed convergence",
+    "Wind Energy 17(9), 1327-1345",
+    "10.1002/we.1636",
+)
+_PRANDTL = Reference(
+    "Prandtl1919",
+    "L. Prandtl, A. Betz",
+    1919,
+    "Schraubenpropeller mit geringstem Energieverlust",
+    "Nachrichten der Gesellschaft der Wissenschaften zu Göttingen, 193-217",
+)
+_BUHL = Reference(
+    "Buhl2005",
+    "M. L. Buhl",
+    2005,
+    "A new empirical relationship between thrust coefficient and induction factor for the "
+    "turbulent windmill state",
+    "NREL/TP-500-36834",
+    "10.2172/15016819",
+    "techreport",
+)
+_HANSEN = Reference(
+    "Hansen2015",
+    "M. O. L. Hansen",
+    2015,
+    "Aerodynamics of Wind Turbines, third edition",
+    "Routledge",
+    kind="book",
+)
+_WILSON = Reference(
+    "WilsonWalker1984",
+    "R. E. Wilson, S. N. Walker",
+    1984,
+    "Performance analysis for propeller type wind turbines",
+    "Oregon State University",
+    kind="techreport",
+)
+_PITT_PETERS = Reference(
+    "PittPeters1981",
+    "D. M. Pitt, D. A. Peters",
+    1981,
+    "Theoretical prediction of dynamic-inflow derivatives",
+    "Vertica 5(1), 21-34",
+)
+_SKEWED_CYLINDER = Reference(
+    "BranlardGaunaa2016",
+    "E. Branlard, M. Gaunaa",
+    2016,
+    "Cylindrical vortex wake model: skewed cylinder, application to yawed or tilted rotors",
+    "Wind Energy 19(2), 345-358",
+)
+_OYE = Reference(
+    "SnelSchepers1995",
+    "H. Snel, J. G. Schepers",
+    1995,
+    "Joint investigation of dynamic inflow effects and implementation of an engineering method",
+    "ECN-C--95-107",
+    kind="techreport",
+)
+_BEDDOES_LEISHMAN = Reference(
+    "HansenGaunaaMadsen2004",
+    "M. H. Hansen, M. Gaunaa, H. A. Madsen",
+    2004,
+    "A Beddoes-Leishman type dynamic stall model in state-space and indicial formulations",
+    "Risø-R-1354(EN)",
+    kind="techreport",
+)
+_SNEL = Reference(
+    "SnelHouwinkBosschers1994",
+    "H. Snel, R. Houwink, J. Bosschers",
+    1994,
+    "Sectional prediction of lift coefficients on rotating wind turbine blades in stall",
+    "ECN-C--93-052",
+    kind="techreport",
+)
+_DU_SELIG = Reference(
+    "DuSelig1998",
+    "Z. Du, M. S. Selig",
+    1998,
+    "A 3-D stall-delay model for horizontal axis wind turbine performance prediction",
+    "1998 ASME Wind Energy Symposium, AIAA-98-0021",
+    "10.2514/6.1998-21",
+    "techreport",
+)
+_MANN_TENSOR = Reference(
+    "Mann1994",
+    "J. Mann",
+    1994,
+    "The spatial structure of neutral atmospheric surface-layer turbulence",
+    "Journal of Fluid Mechanics 273, 141-168",
+    "10.1017/S0022112094001886",
+)
+_MANN_BOX = Reference(
+    "Mann1998",
+    "J. Mann",
+    1998,
+    "Wind field simulation",
+    "Probabilistic Engineering Mechanics 13(4), 269-282",
+    "10.1016/S0266-8920(97)00036-2",
+)
+_VEERS = Reference(
+    "Veers1988",
+    "P. S. Veers",
+    1988,
+    "Three-dimensional wind simulation",
+    "Sandia National Laboratories, SAND88-0152",
+    kind="techreport",
+)
+_IEC = Reference(
+    "IEC61400-1",
+    "International Electrotechnical Commission",
+    2019,
+    "Wind energy generation systems, part 1: design requirements",
+    "IEC 61400-1, edition 4",
+    kind="techreport",
+)
+_NREL5MW = Reference(
+    "Jonkman2009",
+    "J. Jonkman, S. Butterfield, W. Musial, G. Scott",
+    2009,
+    "Definition of a 5-MW reference wind turbine for offshore system development",
+    "NREL/TP-500-38060",
+    "10.2172/947422",
+    "techreport",
+)
+_OC3 = Reference(
+    "Jonkman2010",
+    "J. Jonkman",
+    2010,
+    "Definition of the floating system for phase IV of OC3",
+    "NREL/TP-500-47535",
+    "10.2172/979456",
+    "techreport",
+)
+_DTU10MW = Reference(
+    "Bak2013",
+    "C. Bak, F. Zahle, R. Bitsche, T. Kim, A. Yde, L. C. Henriksen, M. H. Hansen, "
+    "J. P. A. A. Blasques, M. Gaunaa, A. Natarajan",
+    2013,
+    "The DTU 10-MW reference wind turbine",
+    "Danish Wind Power Research 2013, DTU Wind Energy",
+    kind="techreport",
+)
+_IEA15MW = Reference(
+    "Gaertner2020",
+    "E. Gaertner, J. Rinker, L. Sethuraman, F. Zahle, B. Anderson, G. Barter, N. Abbas, F. Meng, "
+    "P. Bortolotti, W. Skrzypinski, G. Scott, R. Feil, H. Bredmose, K. Dykes, M. Shields, "
+    "C. Allen, A. Viselli",
+    2020,
+    "Definition of the IEA Wind 15-megawatt offshore reference wind turbine",
+    "NREL/TP-5000-75698",
+    "10.2172/1603478",
+    "techreport",
+)
+
+TURBINES = {
+    "nrel5mw": (_NREL5MW,),
+    "nrel5mw_oc3": (_NREL5MW, _OC3),
+    "dtu10mw": (_DTU10MW,),
+    "iea15mw": (_IEA15MW,),
+}
+
+#: per option of the aerodynamics block: what each of its values rests on
+AERODYNAMICS: dict[str, dict[object, tuple[Reference, ...]]] = {
+    "model": {"bem": (_NING,)},
+    "tip_loss": {True: (_PRANDTL,)},
+    "root_loss": {True: (_PRANDTL,)},
+    "high_thrust": {"buhl": (_BUHL,), "glauert": (_HANSEN,), "wilson_walker": (_WILSON,)},
+    "skewed_wake": {"pitt_peters": (_PITT_PETERS,), "vortex_cylinder": (_SKEWED_CYLINDER,)},
+    "dynamic_inflow": {"oye": (_OYE,)},
+    "unsteady_airfoil": {"beddoes_leishman": (_BEDDOES_LEISHMAN,)},
+    "rotational_augmentation": {"snel": (_SNEL,), "du_selig": (_DU_SELIG,)},
+}
+
+TURBULENCE = {"mann": (_MANN_TENSOR, _MANN_BOX), "kaimal": (_VEERS, _IEC)}
+UNSTEADY = {"dynamic_inflow", "unsteady_airfoil"}
+
+
+def references(case: Case) -> list[Reference]:
+    """The publications behind a case, each once: turbine, wind, then aerodynamics."""
+    return list(dict.fromkeys(_references(case)))
+
+
+def _references(case: Case) -> Iterator[Reference]:
+    yield from TURBINES.get(case.turbine, ())
+    if case.inflow.turbulence is not None:
+        yield from TURBULENCE.get(case.inflow.turbulence.kind, ())
+    if case.inflow.gust is not None:
+        yield _IEC
+    for option, publications in AERODYNAMICS.items():
+        if case.aerodynamics.quasi_steady and option in UNSTEADY:
+            continue
+        yield from publications.get(getattr(case.aerodynamics, option), ())

@@ -1,0 +1,150 @@
+"""From a case to a machine that is ready to run: turbine, wind, loads and motion put together."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from galerna import turbine as turbines
+from galerna.aero.bem.model import BladeElementMomentum
+from galerna.case import LoadedCase, Series
+from galerna.contract import Array, Channel, LoadModel
+from galerna.errors import InputError
+from galerna.inflow.build import BuiltInflow, build
+from galerna.inflow.sizing import RotorExtent
+from galerna.kinematics import PrescribedMotion, PrescribedOperation
+from galerna.signals import Signal
+from galerna.simulation import Simulation
+from galerna.turbine.model import Turbine
+from galerna.units import DEG, RPM
+
+if TYPE_CHECKING:
+    from galerna.inflow.field import WindField
+
+
+@dataclass(frozen=True, eq=False)
+class Machine:
+    """A case come to life: what it simulates, in what wind, how it is run."""
+
+    case: LoadedCase
+    turbine: Turbine
+    wind: BuiltInflow
+    operation: PrescribedOperation
+    simulation: Simulation
+
+    def describe(self) -> Iterator[tuple[str, str]]:
+        """What was built, in pairs of heading and text."""
+        case, simulation = self.case.case, self.simulation
+        yield "case", self.case.name
+        yield "turbine", f"{case.turbine}, radius {self.turbine.rotor_radius:.4g} m"
+        for line in self.wind.description:
+            yield "inflow", line
+        speed, pitch = self.operation.rotor_speed.value, self.operation.pitch[0].value
+        start = f"rotor speed {speed[0] / RPM:.4g} rpm, pitch {pitch[0] / DEG:.4g} deg"
+        yield "operation", f"{start}{' at the start' if len(speed) + len(pitch) > 2 else ''}"
+        yield "loads", ", ".join(simulation.load_models)
+        steps = round(case.duration_s / case.time_step_s)
+        yield "time", f"{case.duration_s:g} s in {steps} steps of {case.time_step_s:g} s"
+
+
+def build_machine(case: LoadedCase) -> Machine:
+    """Everything that a run needs, wind included; nothing has moved yet.
+
+    Raises InputError with the line of the key that cannot be satisfied.
+    """
+    settings = case.case
+    with case.blame("turbine"):
+        turbine = load_turbine(case)
+    wind = build_wind(case, turbine)
+    with case.blame("aerodynamics"):
+        models = _load_models(case, turbine, wind.field)
+    with case.blame("operation"):
+        operation = _operation(case, turbine, wind.mean_speed)
+        structure = PrescribedMotion(turbine, operation, [m.stations for m in models.values()])
+    with case.blame("time_step_s"):
+        simulation = Simulation(
+            structure, models, settings.time_step_s, probes={"wind": HubWindProbe(wind.field)}
+        )
+    return Machine(case, turbine, wind, operation, simulation)
+
+
+def load_turbine(case: LoadedCase) -> Turbine:
+    """The turbine of a case: a built-in name, or a file relative to the case's folder."""
+    name = case.case.turbine
+    beside = case.folder / name
+    return turbines.load(beside if beside.is_file() else name)
+
+
+def build_wind(case: LoadedCase, turbine: Turbine) -> BuiltInflow:
+    """The wind of a case, made for its turbine and duration."""
+    settings = case.case
+    with case.blame("inflow"):
+        return build(
+            settings.inflow,
+            RotorExtent.of(turbine),
+            settings.duration_s,
+            base_folder=case.folder,
+            seed=settings.seed,
+        )
+
+
+def _load_models(case: LoadedCase, turbine: Turbine, wind: WindField) -> dict[str, LoadModel]:
+    settings = case.case
+    density = settings.air_density_kg_m3
+    models: dict[str, LoadModel] = {
+        "rotor": BladeElementMomentum(
+            turbine, wind, air_density=density, options=settings.aerodynamics
+        )
+    }
+    return models
+
+
+def _operation(case: LoadedCase, turbine: Turbine, wind_speed: float) -> PrescribedOperation:
+    """Rotor speed, pitch and yaw of a case in SI; what is not given comes from the turbine."""
+    operation, blades = case.case.operation, turbine.number_of_blades
+    speed, pitch = operation.rotor_speed_rpm, operation.pitch_deg
+    if operation.operating_point == "steady" and (speed is None or pitch is None):
+        from galerna.aero.bem.steady import operating_point
+
+        point = operating_point(turbine, wind_speed)
+        speed = point.rotor_speed / RPM if speed is None else speed
+        pitch = point.pitch / DEG if pitch is None else pitch
+    each = pitch if isinstance(pitch, tuple) else (pitch or 0.0,) * blades
+    if len(each) != blades:
+        raise InputError("pitch_deg", f"{len(each)} values for {blades} blades")
+    assert speed is not None, "the case would have been refused"
+    return PrescribedOperation(
+        rotor_speed=_signal(speed, RPM),
+        pitch=tuple(_signal(angle, DEG) for angle in each),
+        yaw=_signal(operation.yaw_deg, DEG),
+        azimuth=operation.azimuth_deg * DEG,
+    )
+
+
+def _signal(value: float | Series, unit: float) -> Signal:
+    if isinstance(value, Series):
+        return Signal(np.array(value.time_s), unit * np.array(value.values))
+    return Signal.constant(unit * value)
+
+
+class HubWindProbe:
+    """The undisturbed wind on the tower axis at the hub's height, as channels."""
+
+    channels = (
+        Channel("wind_speed", "m/s", "wind speed at hub height", (), "WindHubVelMag", "m/s"),
+        Channel("wind_x", "m/s", "wind along x at hub height", (), "WindHubVelX", "m/s"),
+        Channel("wind_y", "m/s", "wind along y at hub height", (), "WindHubVelY", "m/s"),
+        Channel("wind_z", "m/s", "wind along z at hub height", (), "WindHubVelZ", "m/s"),
+    )
+
+    def __init__(self, wind: WindField) -> None:
+        self.coordinates: Mapping[str, Array] = {}
+        self._wind = wind
+
+    def record(self, time: float) -> Mapping[str, float | Array]:
+        """The wind at ``time`` s."""
+        x, y, z = self._wind.hub_velocity(time).tolist()
+        return {"wind_speed": (x * x + y * y + z * z) ** 0.5, "wind_x": x, "wind_y": y, "wind_z": z}

@@ -1,0 +1,107 @@
+"""Run a case to a result."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from datetime import UTC, datetime
+from fnmatch import fnmatchcase
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import TYPE_CHECKING, Any
+
+from galerna import __version__
+from galerna.case import LoadedCase, load
+from galerna.cite import references
+from galerna.contract import Channel
+from galerna.errors import GalernaError, InputError, did_you_mean
+from galerna.machine import Machine, build_machine
+from galerna.results.log import Layout
+from galerna.results.store import ResultFile, check_free
+from galerna.simulation import Callback, Simulation
+
+if TYPE_CHECKING:
+    import xarray
+
+
+def run(
+    case: str | Path | Mapping[str, Any] | LoadedCase,
+    output: str | Path | None = None,
+    *,
+    duration: float | None = None,
+    overwrite: bool = False,
+    callbacks: Sequence[Callback] = (),
+) -> xarray.Dataset:
+    """Simulate a case (file, built-in name or dictionary) and return its result.
+
+    With ``output`` the result is a NetCDF file too, whose records are on disk from the
+    first on; a run that fails or is interrupted leaves what it had, and its ``status``
+    says so. ``duration`` s replaces that of the case. Raises InputError, and
+    ConvergenceError where a step fails.
+    """
+    loaded = case if isinstance(case, LoadedCase) else load(case)
+    if duration is not None:
+        loaded = loaded.lasting(duration)
+    if output is None:
+        with TemporaryDirectory(prefix="galerna-") as folder:
+            return simulate(build_machine(loaded), Path(folder) / "result.nc", callbacks=callbacks)
+    check_free(Path(output), overwrite)
+    return simulate(build_machine(loaded), Path(output), overwrite, callbacks)
+
+
+def simulate(
+    machine: Machine, output: Path, overwrite: bool = False, callbacks: Sequence[Callback] = ()
+) -> xarray.Dataset:
+    """Run a machine that is built, into a result file."""
+    settings = machine.case.case
+    channels = _chosen_channels(machine)
+    layout = Layout(channels, machine.simulation.coordinates, _attributes(machine))
+    result = ResultFile(output, layout, overwrite)
+    recorder = Recorder(result, settings.record_every, settings.outputs.start_s)
+    try:
+        machine.simulation.run(settings.duration_s, [recorder, *callbacks])
+    except (GalernaError, KeyboardInterrupt) as error:
+        reason = str(error).splitlines()[0] if str(error) else "interrupted"
+        result.finish(f"stopped at {machine.simulation.time:.6g} s: {reason}")
+        raise
+    return result.finish(machine.simulation.stopped or "complete")
+
+
+class Recorder(Callback):
+    """Writes every so many accepted steps to a result, from a time in s on."""
+
+    def __init__(self, result: ResultFile, every: int, start: float) -> None:
+        self._result, self._every, self._start = result, every, start
+
+    def accepted(self, simulation: Simulation) -> None:
+        if simulation.steps % self._every == 0 and simulation.time >= self._start:
+            self._result.append(simulation.time, simulation.record())
+
+
+def _chosen_channels(machine: Machine) -> tuple[Channel, ...]:
+    """The channels that the case's patterns name; InputError for a pattern that names none."""
+    available = machine.simulation.channels
+    patterns = machine.case.case.outputs.channels
+    for i, pattern in enumerate(patterns):
+        if not any(fnmatchcase(channel.name, pattern) for channel in available):
+            hint = did_you_mean(pattern, [channel.name for channel in available])
+            with machine.case.blame("outputs", "channels", i):
+                raise InputError(repr(pattern), "no channel has this name", hint)
+    return tuple(c for c in available if any(fnmatchcase(c.name, p) for p in patterns))
+
+
+def _attributes(machine: Machine) -> dict[str, str | float]:
+    """Where a result comes from: enough to make it again."""
+    case, settings = machine.case, machine.case.case
+    return {
+        "galerna_version": __version__,
+        "case_name": case.name,
+        "case": case.document.text,
+        "case_folder": str(case.folder),
+        "duration_s": settings.duration_s,
+        "turbine": machine.turbine.name,
+        "hub_height_m": machine.turbine.hub_height,
+        "rotor_radius_m": machine.turbine.rotor_radius,
+        "seed": settings.seed,
+        "references": "\n".join(reference.text for reference in references(settings)),
+        "created": datetime.now(UTC).isoformat(timespec="seconds"),
+    }
