@@ -15,7 +15,7 @@ PLACE = {"mean_speed": 10.0, "hub_height": 80.0}
 
 @pytest.fixture
 def files(tmp_path):
-    """Files in which u counts x, v counts y from the left to the right, w counts z."""
+    """Files in which u counts x, v counts y and w counts z, in the order of the numbers."""
     numbers = np.meshgrid(*(np.arange(n) for n in SHAPE), indexing="ij")
     paths = [tmp_path / f"{name}.bin" for name in "uvw"]
     for path, values in zip(paths, numbers, strict=True):
@@ -27,15 +27,15 @@ def test_order_of_the_numbers(files):
     field = WindField(
         Steady(HubWind(0.0)), Profile(80.0), read_hawc2(files, SHAPE, SPACING, **PLACE)
     )
-    first = field.velocity(np.array([[0.0, 6.0, 72.5]]), 0.0)[0]
-    np.testing.assert_allclose(first, [4, 0, 0], atol=1e-6)  # last plane first; left; bottom
-    later = field.velocity(np.array([[0.0, -6.0, 87.5]]), 1.0)[0]
+    first = field.velocity(np.array([[0.0, -6.0, 72.5]]), 0.0)[0]
+    np.testing.assert_allclose(first, [4, 0, 0], atol=1e-6)  # last plane first; right; bottom
+    later = field.velocity(np.array([[0.0, 6.0, 87.5]]), 1.0)[0]
     np.testing.assert_allclose(later, [3, 2, 3], atol=1e-6)
 
 
-def test_first_row_on_the_right(files):
-    left = read_hawc2(files, SHAPE, SPACING, **PLACE)
-    right = read_hawc2(files, SHAPE, SPACING, **PLACE, first_row="right")
+def test_first_row_on_the_left(files):
+    left = read_hawc2(files, SHAPE, SPACING, **PLACE, first_row="left")
+    right = read_hawc2(files, SHAPE, SPACING, **PLACE)
     np.testing.assert_array_equal(left.data[:, :, ::-1], right.data)
 
 

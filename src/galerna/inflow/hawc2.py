@@ -1,10 +1,10 @@
 """Turbulence boxes as HAWC2 and the Mann generators exchange them, read and written.
 
 Three files of float32 without a header, one per component, with z fastest and rising,
-then y, then x. x points downwind, so the last plane of the file arrives first (as
-hipersim and InflowWind since 2019 take it; older readers took the first plane first).
-y runs from left to right looking downwind (InflowWind, welib); generators that let it
-rise to the left (hipersim) are read with ``first_row="right"``. v is positive to the left.
+then y, then x. x points downwind, so the last plane of the file arrives first (older
+readers took the first one first). y rises to the left looking downwind, where v is
+positive, as in DTU's hipersim: so read, a Mann box is free of divergence. InflowWind
+takes the first row of the file to be the left one; ``first_row="left"`` reads so too.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def read_hawc2(
     *,
     mean_speed: float,
     hub_height: float,
-    first_row: FirstRow = "left",
+    first_row: FirstRow = "right",
 ) -> Box:
     """The fluctuations of the files u, v, w with (nx, ny, nz) points, (dx, dy, dz) m apart.
 
@@ -55,7 +55,7 @@ def read_hawc2(
 
 
 def write_hawc2(
-    stem: Path | str, box: Box, first_row: FirstRow = "left"
+    stem: Path | str, box: Box, first_row: FirstRow = "right"
 ) -> tuple[Path, Path, Path]:
     """Write STEM_u.bin, STEM_v.bin and STEM_w.bin and answer their paths.
 

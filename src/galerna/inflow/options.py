@@ -232,7 +232,9 @@ class Hawc2Files(Turbulence):
         description="Spacing along, across and up."
     )
     first_row: Literal["left", "right"] = Field(
-        "left", description="Side, looking downwind, of the first row across in the file."
+        "right",
+        description="Side, looking downwind, of the first row across in the file: right as Mann's "
+        "generators write it, left as InflowWind reads it.",
     )
     turbulence_intensity: Fraction | None = Field(
         None, description="Scale the box so that the deviation of u is this times the mean speed."
