@@ -55,6 +55,9 @@ class Companion:
             self.published = tuple(_published(b) for b in block.blocks("published"))
         for part in PROPERTIES:
             self.properties[part] = _properties(block.optional(part), PROPERTIES[part])
+        if block.has("platform"):
+            for key in ("reference_point", "mass", "center_of_mass", "inertia"):
+                block.block("platform").value(key)
 
     @property
     def platform(self) -> Platform | None:

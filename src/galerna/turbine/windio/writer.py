@@ -256,7 +256,8 @@ def _companion(turbine: Turbine) -> dict[str, Any]:
     if turbine.published:
         document["published"] = [asdict(published) for published in turbine.published]
     for name, part in parts.items():
-        if part is not None:
-            values = {key: getattr(part, key) for key in PROPERTIES[name]}
-            document[name] = {key: value for key, value in values.items() if value is not None}
+        values = {key: getattr(part, key, None) for key in PROPERTIES[name]}
+        given = {key: value for key, value in values.items() if value is not None}
+        if any(np.any(value) for value in given.values()):
+            document[name] = given
     return document
