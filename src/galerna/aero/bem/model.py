@@ -13,6 +13,7 @@ from galerna.aero.bem import strips as s
 from galerna.aero.bem.dynamic_stall import section_parameters, separation_table
 from galerna.aero.bem.momentum import Momentum
 from galerna.aero.bem.options import BemOptions
+from galerna.aero.bem.spanwise_filter import filter_matrix
 from galerna.aero.sections import BladeSections, blade_sections
 from galerna.contract import Array, Channel, Inflow, Loads, Motion, Stations
 from galerna.turbine.model import Turbine
@@ -59,7 +60,7 @@ class BladeElementMomentum:
         self._rotor = rotor_settings(turbine, self.options, air_density, n)
         self._shape = np.tile(strip_shapes(self.sections, turbine.blade.length), (blades, 1))
         self._table, self._stall = stall_tables(self.sections, self.options)
-        self._spanwise = np.zeros((n, n))
+        self._spanwise = spanwise_matrix(self.sections, turbine.blade.length, self._rotor)
         self._whole_circle = bool(
             np.all(np.ptp(self.sections.coverage, axis=1) >= 2 * np.pi - 0.02)
         )
@@ -182,6 +183,7 @@ def rotor_settings(
         radius=turbine.rotor_radius,
         hub_radius=float(turbine.hub.radius),
         cone=float(turbine.hub.cone),
+        blades=turbine.number_of_blades,
         strips_per_blade=strips_per_blade,
         momentum=Momentum.of(options, turbine.number_of_blades),
         induction=options.induction,
@@ -190,7 +192,8 @@ def rotor_settings(
         unsteady_airfoil=options.has_unsteady_airfoil,
         three_quarter_chord=options.angle_of_attack_point == "three_quarter_chord",
         spanwise_filter=("off", "loads", "feedback").index(options.spanwise_filter),
-        ends_unloaded=options.induction and options.tip_loss,
+        tip_unloaded=options.induction and options.tip_loss,
+        root_unloaded=options.induction and options.root_loss,
     )
 
 
@@ -213,3 +216,13 @@ def stall_tables(sections: BladeSections, options: BemOptions) -> tuple[Array, A
         [(*u.indicial_amplitudes, *u.indicial_exponents) for u in sections.unsteady]
     )
     return table, section_parameters(lift_line, indicial)
+
+
+def spanwise_matrix(sections: BladeSections, length: float, rotor: r.Rotor) -> Array:
+    """The filter of the circulation along a blade (n,n); unloaded ends stay unloaded."""
+    if rotor.spanwise_filter == r.FILTER_OFF:
+        return np.zeros((len(sections), len(sections)))
+    matrix = filter_matrix(sections.span * length, sections.chord, (0.0, length))
+    matrix[(sections.span <= 0.0) & rotor.root_unloaded] = 0.0
+    matrix[(sections.span >= 1.0) & rotor.tip_unloaded] = 0.0
+    return matrix

@@ -50,6 +50,7 @@ class Rotor(NamedTuple):
     radius: float
     hub_radius: float
     cone: float
+    blades: int  #: that are here; the momentum balance has its own number
     strips_per_blade: int
     momentum: Momentum
     induction: bool
@@ -58,7 +59,8 @@ class Rotor(NamedTuple):
     unsteady_airfoil: bool
     three_quarter_chord: bool
     spanwise_filter: int
-    ends_unloaded: bool
+    tip_unloaded: bool
+    root_unloaded: bool
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
@@ -108,7 +110,7 @@ def rotor_loads(
             _skew(rotor, i, rotation, totals, strips)
         _section(rotor, i, table, stall, shape, before, dt, after, strips)
     if rotor.spanwise_filter != FILTER_OFF:
-        _filter_lift(rotor, spanwise, after, strips)
+        _filter_lift(rotor, spanwise, shape, after, strips)
     for i in range(m):
         _load(rotor, i, shape, rotation, strips, force, moment)
     totals[ROTOR_SPEED] = dot(row(angular_velocity, m), shaft)
@@ -256,21 +258,30 @@ def _section(
             max(dt, 0.0),
             end,
         )
+    if (rotor.tip_unloaded and shape[i, s.TO_TIP] <= 0.0) or (
+        rotor.root_unloaded and shape[i, s.TO_ROOT] <= 0.0
+    ):
+        coefficients = 0.0, 0.0, 0.0  # the loss factor is zero there, and so is the circulation
     strips[i, s.LIFT], strips[i, s.DRAG], strips[i, s.MOMENT] = coefficients
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
-def _filter_lift(rotor: Rotor, spanwise: Array, after: Array, strips: Array) -> None:
-    """Let neighbouring sections of a blade share their lift."""
+def _filter_lift(rotor: Rotor, spanwise: Array, shape: Array, after: Array, strips: Array) -> None:
+    """Let neighbouring sections of a blade share their circulation."""
     n = rotor.strips_per_blade
     for first in range(0, strips.shape[0], n):
         for i in range(n):
-            filtered = 0.0
+            circulation = 0.0  # twice
             for j in range(n):
-                filtered += spanwise[i, j] * strips[first + j, s.LIFT]
-            after[first + i, LIFT_SHIFT] = filtered - strips[first + i, s.LIFT]
-        for i in range(n):
-            strips[first + i, s.LIFT] += after[first + i, LIFT_SHIFT]
+                k = first + j
+                circulation += (
+                    spanwise[i, j] * strips[k, s.SPEED] * shape[k, s.CHORD] * strips[k, s.LIFT]
+                )
+            k = first + i
+            around = max(strips[k, s.SPEED], CALM) * shape[k, s.CHORD]
+            after[k, LIFT_SHIFT] = circulation / around - strips[k, s.LIFT]
+        for k in range(first, first + n):
+            strips[k, s.LIFT] += after[k, LIFT_SHIFT]
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
@@ -278,9 +289,6 @@ def _load(
     rotor: Rotor, i: int, shape: Array, rotation: Array, strips: Array, force: Array, moment: Array
 ) -> None:
     """Lump a strip's force and moment on its station's frame."""
-    at_end = min(shape[i, s.TO_TIP], shape[i, s.TO_ROOT]) <= 0.0
-    if rotor.ends_unloaded and at_end:  # the loss factor is zero there, and so is the lift
-        strips[i, s.LIFT], strips[i, s.DRAG], strips[i, s.MOMENT] = 0.0, 0.0, 0.0
     chord, weight = shape[i, s.CHORD], shape[i, s.WEIGHT]
     pressure = 0.5 * rotor.air_density * strips[i, s.SPEED] ** 2 * chord
     c, sn = cos(strips[i, s.INFLOW_ANGLE]), sin(strips[i, s.INFLOW_ANGLE])
@@ -304,7 +312,7 @@ def _total(
 
     The root axes cone with the blade and do not pitch: x downwind, y in the rotor plane.
     """
-    n, blades = rotor.strips_per_blade, int(rotor.momentum.blades)
+    n, blades = rotor.strips_per_blade, rotor.blades
     m = n * blades
     hub = row(position, m)
     shaft, left, up = axis(rotation, m, 0), axis(rotation, m, 1), axis(rotation, m, 2)
