@@ -10,7 +10,7 @@ import numpy as np
 
 from galerna import turbine as turbines
 from galerna.aero.bem.model import BladeElementMomentum
-from galerna.case import LoadedCase, Series
+from galerna.case import LoadedCase, Series, parse
 from galerna.contract import Array, Channel, LoadModel
 from galerna.errors import InputError
 from galerna.inflow.build import BuiltInflow, build
@@ -22,6 +22,8 @@ from galerna.turbine.model import Turbine
 from galerna.units import DEG, RPM
 
 if TYPE_CHECKING:
+    import xarray
+
     from galerna.inflow.field import WindField
 
 
@@ -91,6 +93,13 @@ def build_wind(case: LoadedCase, turbine: Turbine) -> BuiltInflow:
         )
 
 
+def wind_of_result(dataset: xarray.Dataset) -> WindField:
+    """The wind of a result, made again from the case in it; InputError where files are gone."""
+    case = parse(dataset.attrs["case"], "the result's case", dataset.attrs["case_folder"])
+    lasting = case.lasting(float(dataset.attrs["duration_s"]))
+    return build_wind(lasting, load_turbine(lasting)).field
+
+
 def _load_models(case: LoadedCase, turbine: Turbine, wind: WindField) -> dict[str, LoadModel]:
     settings = case.case
     density = settings.air_density_kg_m3
@@ -107,11 +116,9 @@ def _operation(case: LoadedCase, turbine: Turbine, wind_speed: float) -> Prescri
     operation, blades = case.case.operation, turbine.number_of_blades
     speed, pitch = operation.rotor_speed_rpm, operation.pitch_deg
     if operation.operating_point == "steady" and (speed is None or pitch is None):
-        from galerna.aero.bem.steady import operating_point
-
-        point = operating_point(turbine, wind_speed)
-        speed = point.rotor_speed / RPM if speed is None else speed
-        pitch = point.pitch / DEG if pitch is None else pitch
+        point = _steady_point(case, turbine, wind_speed)
+        speed = point[0] / RPM if speed is None else speed
+        pitch = point[1] / DEG if pitch is None else pitch
     each = pitch if isinstance(pitch, tuple) else (pitch or 0.0,) * blades
     if len(each) != blades:
         raise InputError("pitch_deg", f"{len(each)} values for {blades} blades")
@@ -122,6 +129,20 @@ def _operation(case: LoadedCase, turbine: Turbine, wind_speed: float) -> Prescri
         yaw=_signal(operation.yaw_deg, DEG),
         azimuth=operation.azimuth_deg * DEG,
     )
+
+
+def _steady_point(case: LoadedCase, turbine: Turbine, wind_speed: float) -> tuple[float, float]:
+    """Rotor speed rad/s and pitch rad of the turbine's own operating curve."""
+    from galerna.aero.bem.steady import power_curve
+
+    settings = case.case
+    curve = power_curve(
+        turbine,
+        [wind_speed],
+        air_density=settings.air_density_kg_m3,
+        options=settings.aerodynamics,
+    )
+    return float(curve["rotor_speed"][0]), float(curve["pitch"][0])
 
 
 def _signal(value: float | Series, unit: float) -> Signal:

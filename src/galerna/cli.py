@@ -1,0 +1,239 @@
+"""The command line: every command is a few lines around the API."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from galerna import __version__
+from galerna.errors import GalernaError, InputError
+
+app = typer.Typer(
+    name="galerna",
+    help="Wind turbines simulated as one machine: wind, rotor, structure, sea and control.",
+    epilog="Start with: galerna demo",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode="rich",
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+CaseArgument = Annotated[
+    str, typer.Argument(metavar="CASE", help="A case file (.yaml), or a built-in case by name.")
+]
+TurbineArgument = Annotated[
+    str,
+    typer.Argument(metavar="TURBINE", help="A built-in turbine, a windIO file, or a .fst deck."),
+]
+ResultArgument = Annotated[
+    Path, typer.Argument(metavar="RESULT", help="A result (.nc), finished or half-written.")
+]
+
+
+def example(*lines: str) -> str:
+    """The example under a command's help."""
+    return "[bold]Example:[/bold]  " + "   ".join(lines)
+
+
+@app.command(epilog=example("galerna run turbulent --duration 60 --output here.nc"))
+def run(
+    case: CaseArgument,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Result file; CASE.nc by default.")
+    ] = None,
+    duration: Annotated[
+        float | None, typer.Option(help="Simulated time in s instead of the case's.")
+    ] = None,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace the result if there is one.")
+    ] = False,
+) -> None:
+    """Simulate a case into a result file."""
+    from galerna import commands
+
+    commands.run(case, output, duration, overwrite)
+
+
+@app.command(epilog=example("galerna check my_case.yaml"))
+def check(case: CaseArgument) -> None:
+    """Check a case: the file, the turbine, the wind, the box; everything but the run."""
+    from galerna import commands
+
+    commands.check(case)
+
+
+@app.command(epilog=example("galerna demo"))
+def demo(
+    folder: Annotated[
+        Path, typer.Option(help="Where the result and the pictures go; replaced if there.")
+    ] = Path("galerna_demo"),
+    duration: Annotated[float | None, typer.Option(help="Simulated time in s.")] = None,
+) -> None:
+    """Run the NREL 5 MW rotor in turbulent wind and draw what came out."""
+    from galerna import commands
+
+    commands.demo(folder, duration)
+
+
+@app.command(epilog=example("galerna examples --copy my_examples"))
+def examples(
+    copy: Annotated[
+        Path | None, typer.Option(help="Copy the built-in cases and scripts to this folder.")
+    ] = None,
+) -> None:
+    """List the built-in cases, or copy them."""
+    from galerna import commands
+
+    commands.list_examples(copy)
+
+
+@app.command(epilog=example("galerna turbines"))
+def turbines() -> None:
+    """List the built-in turbines."""
+    from galerna import commands
+
+    commands.list_turbines()
+
+
+@app.command(epilog=example("galerna turbine nrel5mw"))
+def turbine(name: TurbineArgument) -> None:
+    """Show a turbine's figures beside the published ones."""
+    from galerna import commands
+
+    commands.show_turbine(name)
+
+
+@app.command(epilog=example("galerna power-curve dtu10mw --plot curve.png --csv curve.csv"))
+def power_curve(
+    turbine: TurbineArgument,
+    plot: Annotated[Path | None, typer.Option(help="Draw the curve into this PNG.")] = None,
+    csv: Annotated[Path | None, typer.Option(help="Write the curve into this file.")] = None,
+    step: Annotated[float, typer.Option(min=0.01, help="Between wind speeds, m/s.")] = 1.0,
+) -> None:
+    """Compute the steady power and thrust over the wind speed."""
+    from galerna import commands
+
+    commands.power_curve(turbine, plot, csv, step)
+
+
+@app.command(epilog=example("galerna wind turbulent --bts box.bts --plot wind.png"))
+def wind(
+    case: CaseArgument,
+    bts: Annotated[Path | None, typer.Option(help="Write the box as a TurbSim file.")] = None,
+    hawc2: Annotated[
+        Path | None,
+        typer.Option(help="Write the box for HAWC2, as this name with _u.bin, _v.bin, _w.bin."),
+    ] = None,
+    plot: Annotated[Path | None, typer.Option(help="Draw slices into this PNG.")] = None,
+) -> None:
+    """Make the wind of a case: describe it, write it, draw it."""
+    from galerna import commands
+
+    commands.wind(case, bts, hawc2, plot)
+
+
+@app.command(epilog=example("galerna validate rotor --json checks.json"))
+def validate(
+    names: Annotated[
+        list[str] | None, typer.Argument(metavar="[GROUP|CASE]...", help="Default: all.")
+    ] = None,
+    list_only: Annotated[bool, typer.Option("--list", help="List the cases only.")] = False,
+    json: Annotated[Path | None, typer.Option(help="Write every check to this file.")] = None,
+    page: Annotated[Path | None, typer.Option(help="Write the page of the documentation.")] = None,
+) -> None:
+    """Hold galerna against published and analytical results."""
+    from galerna import commands
+
+    raise typer.Exit(commands.validate(names or [], list_only, json, page))
+
+
+@app.command(epilog=example("galerna plot demo.nc", "galerna plot demo.nc -c rotor_thrust"))
+def plot(
+    result: ResultArgument,
+    channel: Annotated[
+        list[str] | None, typer.Option("--channel", "-c", help="Only this channel; repeatable.")
+    ] = None,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Folder; RESULT_plots by default.")
+    ] = None,
+) -> None:
+    """Draw a result: rotor over time, along the span, spectra, inflow."""
+    from galerna import commands
+
+    commands.plot(result, channel or [], output)
+
+
+@app.command(epilog=example("galerna export demo.nc demo.outb"))
+def export(
+    result: ResultArgument,
+    file: Annotated[Path, typer.Argument(help="A file .outb (OpenFAST's binary) or .csv.")],
+) -> None:
+    """Write a result for other tools."""
+    from galerna import commands
+
+    commands.export(result, file)
+
+
+@app.command(epilog=example("galerna cite turbulent --bibtex > used.bib"))
+def cite(
+    case: CaseArgument,
+    bibtex: Annotated[bool, typer.Option("--bibtex", help="As BibTeX entries.")] = False,
+) -> None:
+    """List the publications behind the models and the turbine of a case."""
+    from galerna import commands
+
+    commands.cite(case, bibtex)
+
+
+@app.command(hidden=True, epilog=example("galerna schema > case.schema.json"))
+def schema() -> None:
+    """Print the JSON schema of case files, for editors."""
+    from galerna import commands
+
+    commands.schema()
+
+
+def _version(wanted: bool) -> None:
+    if wanted:
+        print(f"galerna {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Show the version.")
+    ] = False,
+) -> None: ...
+
+
+def main(arguments: list[str] | None = None) -> Any:
+    """Run the command line; exits with 0 done, 1 a check failed, 2 bad input, 3 no convergence."""
+    try:
+        app(args=arguments)
+    except GalernaError as error:
+        _report(error)
+        sys.exit(error.exit_code)
+    except OSError as error:
+        _report(InputError(str(error.filename or "file"), error.strerror or str(error)))
+        sys.exit(InputError.exit_code)
+    except KeyboardInterrupt:
+        print("interrupted; the records so far are in the result", file=sys.stderr)
+        sys.exit(130)
+
+
+def _report(error: Exception) -> None:
+    """An error on stderr, its first word marked where the terminal can."""
+    from rich.console import Console
+    from rich.markup import escape
+
+    Console(stderr=True, highlight=False, soft_wrap=True).print(
+        f"[bold red]error[/] {escape(str(error))}"
+    )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,249 @@
+"""What the commands do: call the API and show what came back."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from galerna import examples
+from galerna.errors import GalernaError, InputError
+from galerna.report import tables
+
+if TYPE_CHECKING:
+    from galerna.inflow.field import WindField
+
+
+def run(case: str, output: Path | None, duration: float | None, overwrite: bool) -> None:
+    """Simulate a case with a progress bar and print the statistics of its result."""
+    from galerna import running
+    from galerna.case import load
+    from galerna.progress import best
+
+    loaded = load(case)
+    path = output or _default_output(case)
+    try:
+        result = running.run(
+            loaded,
+            path,
+            duration=duration,
+            overwrite=overwrite,
+            callbacks=[best(sys.stderr.isatty())],
+        )
+    except (GalernaError, KeyboardInterrupt):
+        if path.exists():
+            print(f"the records so far are in {path}", file=sys.stderr)
+        raise
+    tables.print_statistics(result, path)
+
+
+def _default_output(case: str) -> Path:
+    """``CASE.nc`` beside a case file, here for a built-in case."""
+    path = Path(case)
+    return path.with_suffix(".nc") if path.is_file() else Path(f"{path.name}.nc")
+
+
+def check(case: str) -> None:
+    """Build everything that a run needs, and say what it is."""
+    from galerna.case import load
+    from galerna.machine import build_machine
+
+    loaded = load(case)
+    tables.print_pairs(build_machine(loaded).describe())
+    print(f"{loaded.document.name}: ready to run")
+
+
+def demo(folder: Path, duration: float | None) -> None:
+    """Run the demonstration case into a folder of its own, and draw it."""
+    from galerna import running
+    from galerna.case import load
+    from galerna.machine import build_machine
+    from galerna.progress import best
+    from galerna.report import plot_result
+
+    loaded = load("demo") if duration is None else load("demo").lasting(duration)
+    print("NREL 5 MW in turbulent wind: building the wind and compiling the kernels ...")
+    machine = build_machine(loaded)
+    tables.print_pairs(machine.describe())
+    path = folder / "demo.nc"
+    result = running.simulate(machine, path, True, [best(sys.stderr.isatty())])
+    tables.print_statistics(result, path)
+    _print_pictures(plot_result(result, folder, wind=machine.wind.field))
+
+
+def list_examples(copy: Path | None) -> None:
+    """Names of the built-in cases with what they are for; or copy everything to a folder."""
+    from galerna.case import load
+
+    if copy is not None:
+        if copy.exists():
+            raise InputError(str(copy), "exists already", "name a new folder")
+        shutil.copytree(
+            examples.folder(), copy, ignore=shutil.ignore_patterns("__pycache__", "*.nc")
+        )
+        print(f"cases and scripts are in {copy}")
+        return
+    rows = ((name, load(name).case.description) for name in examples.case_names())
+    tables.print_rows("", ("case", "what it is"), rows, numbers_from=2)
+
+
+def list_turbines() -> None:
+    """Names and main figures of the built-in turbines."""
+    from galerna import turbine as turbines
+
+    built_in = [(name, turbines.load(name)) for name in turbines.names()]
+    rows = [
+        (
+            name,
+            t.name,
+            f"{2.0 * t.rotor_radius:.0f}",
+            f"{t.hub_height:.0f}",
+            f"{t.control.rated_power / 1e6:g}",
+            "floating" if t.platform else "fixed",
+        )
+        for name, t in built_in
+    ]
+    headings = ("name", "turbine", "diameter [m]", "hub height [m]", "rated [MW]", "stands")
+    tables.print_rows("", headings, rows, numbers_from=2)
+
+
+def show_turbine(name: str) -> None:
+    """A turbine's figures beside the published ones, with difference and source."""
+    from galerna import turbine as turbines
+    from galerna.turbine.summary import fitted_airfoils, summary
+
+    turbine = turbines.load(name)
+    rows = [
+        (
+            row.quantity,
+            row.unit,
+            tables.number(row.value),
+            tables.number(row.published),
+            "" if row.difference is None else f"{100.0 * row.difference:+.2f} %",
+            row.source,
+        )
+        for row in summary(turbine)
+    ]
+    headings = ("quantity", "unit", "galerna", "published", "difference", "source of published")
+    tables.print_rows(turbine.name, headings, rows, numbers_from=2)
+    fitted = fitted_airfoils(turbine)
+    if fitted:
+        print(f"unsteady parameters fitted from the polar: {', '.join(fitted)}")
+
+
+def power_curve(name: str, plot: Path | None, csv: Path | None, step: float) -> None:
+    """The steady operating curve as a table, a picture, a file."""
+    import numpy as np
+
+    from galerna import turbine as turbines
+    from galerna.aero.bem import steady
+    from galerna.report import power_curve_figure
+    from galerna.report.style import save
+
+    turbine = turbines.load(name)
+    control = turbine.control
+    last = control.cut_out_wind_speed + 1e-9
+    curve = steady.power_curve(turbine, np.arange(control.cut_in_wind_speed, last, step))
+    tables.print_curve(turbine.name, curve)
+    if plot is not None:
+        print(f"picture: {save(power_curve_figure(curve, turbine.name), plot)}")
+    if csv is not None:
+        curve.to_dataframe().to_csv(csv)
+        print(f"table: {csv}")
+
+
+def wind(case: str, bts: Path | None, hawc2: Path | None, plot: Path | None) -> None:
+    """The wind of a case in words, as files, as a picture."""
+    from galerna.case import load
+    from galerna.machine import build_wind, load_turbine
+    from galerna.report import RotorCircle, inflow_figure
+    from galerna.report.style import save
+
+    loaded = load(case)
+    turbine = load_turbine(loaded)
+    built = build_wind(loaded, turbine)
+    tables.print_pairs(("inflow", line) for line in built.description)
+    if bts is not None or hawc2 is not None:
+        _write_box(built.field, bts, hawc2)
+    if plot is not None:
+        rotor = RotorCircle(turbine.hub_height, turbine.rotor_radius)
+        figure = inflow_figure(built.field, rotor, loaded.case.duration_s, name=loaded.name)
+        print(f"picture: {save(figure, plot)}")
+
+
+def _write_box(field: WindField, bts: Path | None, hawc2: Path | None) -> None:
+    from galerna.inflow.bts import write_bts
+    from galerna.inflow.hawc2 import write_hawc2
+
+    box = field.box
+    if box is None:
+        raise InputError("inflow", "has no turbulence to write", "add inflow.turbulence")
+    if bts is not None:
+        write_bts(bts, box, None if box.holds_mean else field.profile)
+        print(f"TurbSim file: {bts}")
+    if hawc2 is not None:
+        print("HAWC2 files: " + ", ".join(str(path) for path in write_hawc2(hawc2, box)))
+
+
+def validate(names: list[str], list_only: bool, json_file: Path | None, page: Path | None) -> int:
+    """Run validation cases and print their checks; 1 if one fails."""
+    from galerna import validating
+
+    chosen = validating.chosen(names)
+    if list_only:
+        rows = ((c.group, c.name, f"{c.seconds:g} s", c.title) for c in chosen)
+        tables.print_rows("", ("group", "case", "cost", "what it holds"), rows, numbers_from=4)
+        return 0
+    return validating.judge(chosen, json_file, page)
+
+
+def plot(result: Path, channels: list[str], output: Path | None) -> None:
+    """Draw a result into a folder; the inflow is made again from the case in it."""
+    from galerna.machine import wind_of_result
+    from galerna.report import plot_result
+    from galerna.results import open_result
+
+    dataset = open_result(result)
+    if dataset.attrs["status"] != "complete":
+        print(f"{result}: {dataset.attrs['status']}", file=sys.stderr)
+    folder = output or result.with_name(f"{result.stem}_plots")
+    wind = None
+    if not channels:
+        try:
+            wind = wind_of_result(dataset)
+        except InputError as error:
+            print(f"no picture of the inflow: {error}", file=sys.stderr)
+    _print_pictures(plot_result(dataset, folder, channels, wind))
+
+
+def _print_pictures(paths: list[Path]) -> None:
+    print("pictures: " + ", ".join(str(path) for path in paths))
+
+
+def export(result: Path, file: Path) -> None:
+    """Write a result as .outb or .csv, by the name's ending."""
+    from galerna.results import open_result, to_csv, to_outb
+
+    writers = {".outb": to_outb, ".csv": to_csv}
+    if file.suffix not in writers:
+        raise InputError(str(file), f"ends with {file.suffix!r}, expected .outb or .csv")
+    writers[file.suffix](open_result(result), file)
+    print(f"written: {file}")
+
+
+def cite(case: str, bibtex: bool) -> None:
+    """The publications behind a case, as lines or as BibTeX."""
+    from galerna.case import load
+    from galerna.cite import references
+
+    for reference in references(load(case).case):
+        print(reference.bibtex if bibtex else f"- {reference.text}")
+
+
+def schema() -> None:
+    """The JSON schema of case files."""
+    from galerna.schema import case_schema
+
+    print(json.dumps(case_schema(), indent=2))

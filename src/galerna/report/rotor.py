@@ -1,0 +1,73 @@
+"""Rotor quantities over time."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from galerna.errors import InputError
+from galerna.report.style import COLOURS, galerna_style, label, new_figure, shown, title_of
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+#: shown from top to bottom, as far as a result has them
+ROTOR_CHANNELS = (
+    "wind_speed",
+    "rotor_speed",
+    "pitch",
+    "rotor_power",
+    "rotor_thrust",
+    "aerodynamic_root_out_of_plane_moment",
+    "aerodynamic_root_in_plane_moment",
+)
+
+
+def rotor_figure(dataset: xarray.Dataset, channels: tuple[str, ...] = ROTOR_CHANNELS) -> Figure:
+    """Panels of channels over time, one below the other; blades share a panel.
+
+    What does not change is told in the title. Raises InputError if the result has none
+    of the channels.
+    """
+    present = [name for name in channels if name in dataset and dataset[name].ndim <= 2]
+    if not present:
+        raise InputError("plot", f"the result has none of the channels {', '.join(channels)}")
+    constant = [name for name in present if _is_constant(dataset[name])]
+    names = [name for name in present if name not in constant] or present
+    with galerna_style():
+        figure, axes = new_figure(len(names), 1, (9.0, 1.2 + 1.45 * len(names)), sharex=True)
+        for ax, name in zip(axes[:, 0], names, strict=True):
+            _draw(ax, dataset[name])
+        axes[-1, 0].set_xlabel("Time [s]")
+        fixed = [_figure_of(dataset[name]) for name in constant if name not in names]
+        figure.suptitle("\n".join([title_of(dataset, "Rotor over time"), ", ".join(fixed)]).strip())
+    return figure
+
+
+def _is_constant(variable: xarray.DataArray) -> bool:
+    return bool((variable == variable.values.flat[0]).all())
+
+
+def _figure_of(variable: xarray.DataArray) -> str:
+    """A channel that does not change, in words."""
+    values, unit = shown(variable)
+    return f"{variable.attrs.get('long_name', variable.name)} {values.flat[0]:.4g} {unit}"
+
+
+def _draw(ax: Axes, variable: xarray.DataArray) -> None:
+    values, unit = shown(variable)
+    time = variable["time"].values
+    ax.set_title(label(variable, unit))
+    ax.margins(x=0.0)
+    if variable.ndim == 1:
+        ax.plot(time, values, color=COLOURS[0])
+        return
+    dim = variable.dims[1]
+    if (values == values[:, :1]).all():
+        ax.plot(time, values[:, 0], color=COLOURS[0], label=f"every {dim}")
+    else:
+        for i, place in enumerate(variable[dim].values):
+            name = f"{dim} {place:g}" if dim == "blade" else "xyz"[i]
+            ax.plot(time, values[:, i], color=COLOURS[i % len(COLOURS)], label=name)
+    ax.legend(ncols=3, loc="lower right", bbox_to_anchor=(1.0, 0.97), borderaxespad=0.0)

@@ -1,0 +1,90 @@
+"""One look for every picture: quiet axes, and colours that colour-blind readers tell apart."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from galerna.contract import Array
+
+if TYPE_CHECKING:
+    import xarray
+    from matplotlib.figure import Figure
+
+#: Okabe and Ito's palette without its yellow, which does not show on white
+BLUE, VERMILION, GREEN, PURPLE, ORANGE = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00"
+COLOURS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE)
+GREY = "#6f6f6f"
+WIND_COLOURS = "viridis"
+
+_SETTINGS: Any = {
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.titlesize": "medium",
+    "axes.titlelocation": "left",
+    "grid.color": "#e4e4e4",
+    "grid.linewidth": 0.7,
+    "lines.linewidth": 1.1,
+    "font.size": 9.5,
+    "legend.frameon": False,
+    "savefig.dpi": 150,
+}
+
+#: how quantities are shown: factor to the unit that a reader of the field expects
+_SHOWN = {
+    "W": (1e-6, "MW"),
+    "N": (1e-3, "kN"),
+    "N m": (1e-6, "MN m"),
+    "rad": (180.0 / np.pi, "deg"),
+    "rad/s": (30.0 / np.pi, "rpm"),
+    "N/m": (1e-3, "kN/m"),
+}
+
+
+@contextmanager
+def galerna_style() -> Iterator[None]:
+    """The settings of every picture, for the time of drawing it."""
+    import matplotlib
+
+    with matplotlib.rc_context(_SETTINGS):
+        yield
+
+
+def new_figure(rows: int, columns: int, size: tuple[float, float], **options: Any) -> tuple:
+    """A figure that no window owns, and its axes (rows, columns)."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=size, layout="constrained")
+    return figure, figure.subplots(rows, columns, squeeze=False, **options)
+
+
+def shown(variable: xarray.DataArray) -> tuple[Array, str]:
+    """Values and unit of a channel as a reader of the field expects them."""
+    unit = str(variable.attrs.get("units", ""))
+    factor, unit = _SHOWN.get(unit, (1.0, unit))
+    return factor * variable.values.astype(float), unit
+
+
+def label(variable: xarray.DataArray, unit: str) -> str:
+    """Axis label: what the channel means and its unit, the meaning on a line of its own."""
+    name = str(variable.attrs.get("long_name", variable.name))
+    return f"{name[:1].upper()}{name[1:]}" + (f" [{unit}]" if unit and unit != "1" else "")
+
+
+def title_of(dataset: xarray.Dataset, what: str) -> str:
+    """What is shown, of which turbine and case."""
+    parts = [dataset.attrs.get("turbine", ""), dataset.attrs.get("case_name", "")]
+    named = ", ".join(part for part in parts if part)
+    return f"{what}: {named}" if named else what
+
+
+def save(figure: Figure, path: Path) -> Path:
+    """Write a PNG and return where it is."""
+    with galerna_style():
+        figure.savefig(path)
+    return path
