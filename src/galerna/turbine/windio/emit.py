@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
+from math import isfinite
 from typing import Any
 
 _STEP = "  "
@@ -43,6 +44,8 @@ def _scalar(value: Any) -> str:
             return json.dumps(value)
         case float():
             text = repr(float(value))  # a NumPy scalar prints its type
+            if not isfinite(value):
+                return text.replace("nan", ".nan").replace("inf", ".inf")
             return text.replace("e", ".0e") if "e" in text and "." not in text else text
         case int():
             return str(value)

@@ -41,11 +41,12 @@ def validate_document(document: Document) -> list[str]:
     """
     schema = _schema()
     strangers: dict[Keys, list[str]] = {}
-    for keys, valid in _unknown_keys(document.data, schema, schema, ()):
+    for keys, valid, welcome in _unknown_keys(document.data, schema, schema, ()):
         name = str(keys[-1])
         if name not in _KNOWN_STRANGERS and get_close_matches(name, valid, n=1, cutoff=_TYPO):
             raise document.error(keys, f"unknown key {name!r}", did_you_mean(name, valid))
-        strangers.setdefault(keys[:-1], []).append(name)
+        if not welcome:
+            strangers.setdefault(keys[:-1], []).append(name)
     errors = _schema_errors(document.data)
     if errors:
         more = f" (and {len(errors) - 1} more departures from windIO v2)" if errors[1:] else ""
@@ -79,15 +80,16 @@ def _schema() -> dict[str, Any]:
 
 def _unknown_keys(
     data: Any, schema: dict[str, Any], root: dict[str, Any], keys: Keys
-) -> Iterator[tuple[Keys, list[str]]]:
-    """Keys that the schema does not name, with those it names at the same place."""
+) -> Iterator[tuple[Keys, list[str], bool]]:
+    """Keys that the schema does not name, those it names there, whether others are welcome."""
     schema = _resolved(schema, root)
     if isinstance(data, dict) and "properties" in schema and not _is_under(keys, _NOT_READ):
         for key, value in data.items():
             if key in schema["properties"]:
                 yield from _unknown_keys(value, schema["properties"][key], root, (*keys, key))
-            elif schema.get("additionalProperties") is not True:
-                yield (*keys, key), list(schema["properties"])
+            else:
+                welcome = schema.get("additionalProperties") is True
+                yield (*keys, key), list(schema["properties"]), welcome
     elif isinstance(data, list) and isinstance(schema.get("items"), dict):
         for i, item in enumerate(data):
             yield from _unknown_keys(item, schema["items"], root, (*keys, i))
