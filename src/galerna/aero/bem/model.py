@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from math import inf
 
 import numpy as np
@@ -13,24 +14,29 @@ from galerna.aero.bem import strips as s
 from galerna.aero.bem.dynamic_stall import section_parameters, separation_table
 from galerna.aero.bem.momentum import Momentum
 from galerna.aero.bem.options import BemOptions
+from galerna.aero.bem.rotational_augmentation import augment
 from galerna.aero.bem.spanwise_filter import filter_matrix
 from galerna.aero.sections import BladeSections, blade_sections
+from galerna.aero.tower_influence import add_tower_influence, tower_sections
 from galerna.contract import Array, Channel, Inflow, Loads, Motion, Stations
+from galerna.errors import ConvergenceError
 from galerna.turbine.model import Turbine
 from galerna.units import AIR_DENSITY
 
 FIRST_GUESS = 0.2  #: rad, of the inflow angle
+RATED_WIND = 11.0  #: m/s, where a turbine does not say
 FEEDBACK_PASSES = 50  #: of the filtered lift through the momentum balance, before a start
 
 
 class BladeElementMomentum:
     """Aerodynamic loads of the rotor by blade-element momentum theory.
 
-    It sees the frames of the blades' stations and of the hub, whatever moves them, and the
-    ``inflow`` at the strips. Velocities are taken in the plane across the span of each
-    moving, deflected section; the momentum balance is that of the annulus the strip sweeps,
-    with its radius from the shaft axis and the induced velocity along the shaft. Structural
-    velocities count as wind for the balance of the moment and are delayed like it.
+    It sees the frames of the blades' stations, of the hub and, for its influence on the wind,
+    of the tower, whatever moves them, and the ``inflow`` at the strips. Velocities are taken
+    in the plane across the span of each moving, deflected section; the momentum balance is
+    that of the annulus the strip sweeps, with its radius from the shaft axis and the induced
+    velocity along the shaft. Structural velocities count as wind for the balance of the
+    moment and are delayed like it.
     Raises InputError where the turbine's blade or polars cannot be used.
     """
 
@@ -52,6 +58,11 @@ class BladeElementMomentum:
         self.stations = (
             *(Stations(f"blade{b + 1}", self.sections.span) for b in range(blades)),
             Stations("hub"),
+            *(
+                (Stations("tower", turbine.tower.axis_span),)
+                if self.options.tower_influence
+                else ()
+            ),
         )
         self.coordinates: Mapping[str, Array] = {
             "blade": np.arange(1.0, blades + 1.0),
@@ -64,6 +75,7 @@ class BladeElementMomentum:
         self._whole_circle = bool(
             np.all(np.ptp(self.sections.coverage, axis=1) >= 2 * np.pi - 0.02)
         )
+        self._tower = tower_sections(turbine.tower, turbine.tower.axis_span)
         self._allocate(blades * n, blades)
 
     def _allocate(self, strips: int, blades: int) -> None:
@@ -75,7 +87,7 @@ class BladeElementMomentum:
         self._strips = np.zeros((strips, s.STRIP_COLUMNS))
         self._totals = np.zeros(r.ROOT_MOMENTS + 2 * blades)
         self._shown = self._strips.copy(), self._totals.copy()
-        self._seen = np.full((strips + 1, r.SEEN_COLUMNS), np.nan)
+        self._seen = np.full((sum(map(len, self.stations)), r.SEEN_COLUMNS), np.nan)
 
     def begin_step(self, time: float, dt: float, motion: Motion) -> None:
         """Prepare a trial of ``dt`` s; the first one starts from the long-lasting flow."""
@@ -85,7 +97,7 @@ class BladeElementMomentum:
         self._dt = dt
 
     def loads(self, time: float, motion: Motion) -> Loads:
-        """Forces and moments on all stations; the hub's are zero."""
+        """Forces and moments on all stations; the hub's and the tower's are zero."""
         loads = self._evaluate(time, motion)
         r.remember(
             motion.position,
@@ -143,6 +155,30 @@ class BladeElementMomentum:
         started, self._before, self._dt = self._before, before, dt
         return started
 
+    def _wind(self, time: float, motion: Motion) -> Array:
+        """Wind (m,3) m/s at the strips, as the tower lets it through."""
+        wind = self.inflow.velocity(self._points, time)
+        if not self.options.tower_influence:
+            return wind
+        tower, velocity = slice(len(wind) + 1, None), np.array(wind)
+        inside = add_tower_influence(
+            self._points,
+            motion.position[tower],
+            motion.velocity[tower],
+            self._tower,
+            True,
+            velocity,
+        )
+        if inside >= 0:
+            blade, station = divmod(inside, len(self.sections))
+            raise ConvergenceError(
+                f"blade{blade + 1}",
+                f"is inside the tower at {self.sections.span[station]:.1%} of its span",
+                "check overhang, tilt, cone and prebend, or the deflection",
+                time,
+            )
+        return velocity
+
     def _evaluate(self, time: float, motion: Motion) -> Loads:
         loads = Loads.zero(len(motion.position))
         s.aerodynamic_centers(motion.position, motion.rotation, self._shape, self._points)
@@ -153,7 +189,7 @@ class BladeElementMomentum:
             motion.rotation,
             motion.velocity,
             motion.angular_velocity,
-            self.inflow.velocity(self._points, time),
+            self._wind(time, motion),
             self._shape,
             self._table,
             self._stall,
@@ -170,8 +206,27 @@ class BladeElementMomentum:
 
 
 def rotor_sections(turbine: Turbine, options: BemOptions) -> BladeSections:
-    """The strips of one blade as the options want them."""
-    return blade_sections(turbine, options.stations)
+    """The strips of one blade as the options want them, stall delayed by rotation included."""
+    sections = blade_sections(turbine, options.stations)
+    method = options.rotational_augmentation
+    if method == "none":
+        return sections
+    control, table = turbine.control, sections.table.copy()
+    speed = control.rated_rotor_speed * turbine.rotor_radius
+    ratio = control.optimal_tip_speed_ratio or speed / (control.rated_wind_speed or RATED_WIND)
+    radius = turbine.hub.radius + sections.position[:, 2]
+    fraction = radius / (turbine.hub.radius + turbine.blade.axis[-1, 2])
+    for i, chord in enumerate(sections.chord):
+        table[i, :, 0], table[i, :, 1] = augment(
+            sections.angles,
+            table[i, :, 0],
+            table[i, :, 1],
+            method,
+            chord / radius[i],
+            fraction[i],
+            ratio,
+        )
+    return replace(sections, table=table)
 
 
 def rotor_settings(

@@ -57,7 +57,9 @@ class SteadyRotor:
         yaw_error: float = 0.0,
     ) -> None:
         self.turbine, self.air_density, self.yaw_error = turbine, air_density, yaw_error
-        quasi_steady = (options or BemOptions()).model_copy(update={"quasi_steady": True})
+        quasi_steady = (options or BemOptions()).model_copy(
+            update={"quasi_steady": True, "tower_influence": False}
+        )
         self._model = BladeElementMomentum(
             turbine, UniformWind(np.zeros(3)), air_density=air_density, options=quasi_steady
         )

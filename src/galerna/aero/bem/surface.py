@@ -57,7 +57,9 @@ class _Sweep:
     """One blade of a rotor, asked over many rotor speeds at once."""
 
     def __init__(self, turbine: Turbine, options: BemOptions) -> None:
-        steady = options.model_copy(update={"quasi_steady": True, "skewed_wake": "none"})
+        steady = options.model_copy(
+            update={"quasi_steady": True, "skewed_wake": "none", "tower_influence": False}
+        )
         self.turbine, self.sections = turbine, bem.rotor_sections(turbine, steady)
         settings = bem.rotor_settings(turbine, steady, 1.0, len(self.sections))
         self.rotor = settings._replace(blades=1)
