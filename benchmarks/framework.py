@@ -30,7 +30,7 @@ class Figure:
     def passed(self) -> bool | None:
         if self.wanted is None:
             return None
-        return self.value >= self.wanted if self.at_least else self.value <= self.wanted
+        return bool(self.value >= self.wanted if self.at_least else self.value <= self.wanted)
 
     @property
     def ratio(self) -> float | None:

@@ -47,7 +47,7 @@ class Check:
         """Whether the difference is within the tolerance; None if not judged."""
         if self.tolerance is None:
             return None
-        return math.isfinite(self.value) and abs(self.difference) <= self.tolerance
+        return bool(math.isfinite(self.value) and abs(self.difference) <= self.tolerance)
 
 
 @dataclass(frozen=True)
