@@ -13,6 +13,7 @@ below its width: there the lean of the eddies is lost.
 from __future__ import annotations
 
 import math
+from functools import cache
 
 import numpy as np
 from numba import njit
@@ -25,6 +26,21 @@ from galerna.inflow.spectra import mann_spectra
 Factor = NDArray[np.float32]
 
 
+@cache
+def _gauss_points(count: int) -> tuple[NDArray, Array, Array, Array]:
+    """Where each cell's points start (count + 1,), their cells, places in (-1, 1) and weights.
+
+    Cells in the order of ``numpy.fft.fftfreq``; the nearer to zero, the more points.
+    """
+    cells = np.fft.fftfreq(count, 1.0 / count)
+    away = np.abs(cells)
+    numbers = np.select([away < 1, away < 4, away < 12], [24, 4, 2], 1)
+    rules = {n: np.polynomial.legendre.leggauss(n) for n in np.unique(numbers)}
+    start = np.concatenate([[0], np.cumsum(numbers)])
+    places, weights = (np.concatenate([rules[n][i] for n in numbers]) for i in (0, 1))
+    return start, np.repeat(cells, numbers), places, weights
+
+
 def axis_quadrature(count: int, width: float, finest: float) -> tuple[NDArray, Array, Array]:
     """Gauss points of every cell of one axis, in the order of ``numpy.fft.fftfreq``.
 
@@ -32,20 +48,10 @@ def axis_quadrature(count: int, width: float, finest: float) -> tuple[NDArray, A
     (n,), in the unit of ``width``, the cells' own. The points crowd around zero,
     k = c sinh(s) with c = ``finest``, as the tensor has detail at k2, k3 ~ k1.
     """
-    points, weights, start = [], [], [0]
-    for cell in np.fft.fftfreq(count, 1.0 / count):
-        away = abs(cell)
-        number = 24 if away == 0 else 4 if away < 4 else 2 if away < 12 else 1
-        gauss, share = np.polynomial.legendre.leggauss(number)
-        low, high = (
-            np.arcsinh((cell - 0.5) * width / finest),
-            np.arcsinh((cell + 0.5) * width / finest),
-        )
-        s = 0.5 * (low + high) + 0.5 * (high - low) * gauss
-        points.append(finest * np.sinh(s))
-        weights.append(0.5 * (high - low) * share * finest * np.cosh(s))
-        start.append(start[-1] + number)
-    return np.array(start), np.concatenate(points), np.concatenate(weights)
+    start, cell, place, weight = _gauss_points(count)
+    low, high = (np.arcsinh((cell + edge) * width / finest) for edge in (-0.5, 0.5))
+    s = 0.5 * (low + high) + 0.5 * (high - low) * place
+    return start, finest * np.sinh(s), 0.5 * (high - low) * weight * finest * np.cosh(s)
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
