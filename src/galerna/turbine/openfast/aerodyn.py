@@ -62,7 +62,6 @@ def read_blade_nodes(blade: Deck, airfoil_names: list[str]) -> BladeNodes:
     )
     first_row = blade.header("BlSpn")[0] + 2
     for bad, what in (
-        (np.append(False, np.diff(span) <= 0.0), "BlSpn must ascend"),
         (chord <= 0.0, "BlChord must be positive"),
         ((number < 1) | (number > len(airfoil_names)), f"BlAFID must be 1 to {len(airfoil_names)}"),
         (number != np.floor(number), "BlAFID must be a whole number"),

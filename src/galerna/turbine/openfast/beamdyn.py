@@ -10,6 +10,7 @@ from galerna.turbine.model import Array, SectionProperties
 from galerna.turbine.openfast.deck import Deck
 from galerna.units import DEG
 
+STEEPEST = 5.0  #: metres sideways for one outwards
 _DAMPING_NONE, _DAMPING_STIFFNESS, _DAMPING_MODAL = 0, 1, 2
 
 
@@ -27,8 +28,7 @@ def read_beamdyn(deck: Deck, blade: Deck) -> BeamBlade:
     table = deck.table("kp_total", "kp_xr", least=2)
     axis = np.stack([deck.column(table, f"kp_{c}r") for c in "xyz"], axis=1)
     twist = deck.column(table, "initial_twist") * DEG
-    if (np.diff(axis[:, 2]) <= 0.0).any():
-        raise deck.error("kp_zr must ascend", "", deck.header("kp_xr")[0])
+    check_axis(deck, "kp_xr", axis)
     length = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(axis, axis=0), axis=1))])
     span = length / length[-1]
     stations, stiffness, inertia = _sections(blade)
@@ -40,6 +40,19 @@ def read_beamdyn(deck: Deck, blade: Deck) -> BeamBlade:
         **_damping(blade),
     )
     return BeamBlade(span, axis - axis[0], structure)
+
+
+def check_axis(deck: Deck, header: str, points: Array) -> None:
+    """Points (n,3) m of a blade go outwards, and sideways no more than steeply."""
+    steps = np.diff(points, axis=0)
+    wrong = np.abs(steps[:, :2]).max(axis=1) >= STEEPEST * steps[:, 2]
+    if wrong.any():
+        k = int(np.argmax(wrong))
+        raise deck.error(
+            f"the blade does not go outwards from point {k + 1} to {k + 2}",
+            "",
+            deck.header(header)[0],
+        )
 
 
 def _sections(deck: Deck) -> tuple[Array, Array, Array]:

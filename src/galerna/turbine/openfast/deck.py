@@ -12,7 +12,9 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from math import inf, isfinite
+from difflib import get_close_matches
+from itertools import pairwise
+from math import inf
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +24,8 @@ from galerna.turbine.model import Array
 
 LARGEST_FILE = 10_000_000  #: bytes; the largest real deck file is a few hundred kB
 LONGEST_LINE = 100_000  #: characters
+LARGEST_NUMBER = 1e30  #: in any unit: more is a slip, and its square must not overflow
+MOST_NAMES_IN_A_HINT = 20
 _WORD = re.compile(r"""@?"[^"]*"|@?'[^']*'|[^\s,]+""")
 _NAME = re.compile(r"[A-Za-z_][\w()\[\]]*")
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:[eEdDqQ]?([+-]?\d+))?")
@@ -84,8 +88,8 @@ class Deck:
         found = self.entries.get(_plain(keyword))
         if not found:
             names = [entries[0].keyword for entries in self.entries.values()]
-            hint = did_you_mean(keyword, names) if len(names) < 400 else ""
-            raise self.error(f"keyword {keyword!r} is missing", hint)
+            near = get_close_matches(keyword, names) or names[:MOST_NAMES_IN_A_HINT]
+            raise self.error(f"keyword {keyword!r} is missing", did_you_mean(keyword, near))
         return found[0]
 
     def is_default(self, keyword: str) -> bool:
@@ -221,8 +225,7 @@ class Deck:
     def parts(self, keyword: str) -> Iterator[Deck]:
         """The file cut at each line with a keyword, from the first of them on."""
         starts = [entry.line for entry in self.entries.get(_plain(keyword), [])]
-        ends = [*starts[1:], self.first_line + len(self.lines)]
-        for start, end in zip(starts, ends, strict=True):
+        for start, end in pairwise([*starts, self.first_line + len(self.lines)]):
             lines = self.lines[start - self.first_line : end - self.first_line]
             yield Deck(self.path, lines, start)
 
@@ -235,7 +238,7 @@ class Deck:
     def _number(self, word: str, what: str, line: int) -> float:
         match = _NUMBER.fullmatch(_unquoted(word))
         value = float(f"{match[1]}e{match[2] or 0}") if match else inf
-        if not isfinite(value):
+        if abs(value) > LARGEST_NUMBER:
             raise self.error(f"{what}: expected a finite number, found {word!r}", "", line)
         return value
 

@@ -25,7 +25,7 @@ from galerna.turbine.model import (
     Turbine,
 )
 from galerna.turbine.openfast import aerodyn, elastodyn, servodyn
-from galerna.turbine.openfast.beamdyn import BeamBlade, read_beamdyn
+from galerna.turbine.openfast.beamdyn import BeamBlade, check_axis, read_beamdyn
 from galerna.turbine.openfast.deck import Deck
 
 _LENGTHS_AGREE = 0.01  # of the blade's length
@@ -96,6 +96,7 @@ class _Reader:
         airfoils, names = aerodyn.read_airfoils(self.aerodyn, self.notes)
         blade_file = self._credit("blade.outer_shape", self.aerodyn.file("ADBlFile(1)"))
         nodes = aerodyn.read_blade_nodes(blade_file, names)
+        check_axis(blade_file, "BlSpn", nodes.centers)
         used = {name: airfoils[name] for name in nodes.airfoils}
         for deck, key in ((self.aerodyn, "ADBlFile"), (self.elastodyn, "BldFile")):
             self._warn_of_different_blades(deck, key)
