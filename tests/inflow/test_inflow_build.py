@@ -110,6 +110,14 @@ def test_box_too_small_names_every_side():
     assert "46 m are missing below" in str(caught.value)
 
 
+def test_box_that_only_ends_above_the_ground_may_be_held_down():
+    high = MANN | {"points": [64, 16, 19], "below_box": "error"}
+    with pytest.raises(InputError, match=r"18 m are missing below\n.*below_box: hold"):
+        built(wind_speed_m_s=12, turbulence=high)
+    held = built(wind_speed_m_s=12, turbulence=high | {"below_box": "hold"})
+    assert np.isfinite(held.field.velocity(np.array([[0.0, 0.0, 5.0]]), 3.0)).all()
+
+
 @pytest.fixture
 def file(tmp_path):
     """A TurbSim file of 30 s that does not repeat, wide enough, down to the ground."""

@@ -160,12 +160,13 @@ def test_box_tilts_with_the_upflow_about_the_hub():
     np.testing.assert_allclose(lifted, straight @ lift.T, atol=1e-9)
 
 
-def test_box_stands_on_the_sheared_wind():
+def test_box_stands_on_the_mean_wind_whatever_it_is():
     profile, points = Profile.power_law(HUB, 0.2), points_in_rotor()
+    wind = {"gust": 2.0, "lateral_gradient": 0.1, "vertical_gradient": 0.2, "vertical_speed": 0.7}
     alone = field(random_box(), speed=0.0).velocity(points, 2.0)
-    sheared = field(profile=profile).velocity(points, 2.0)
-    both = field(random_box(), profile=profile).velocity(points, 2.0)
-    np.testing.assert_allclose(both, alone + sheared, atol=1e-9)
+    mean = field(profile=profile, **wind).velocity(points, 2.0)
+    both = field(random_box(), profile=profile, **wind).velocity(points, 2.0)
+    np.testing.assert_allclose(both, alone + mean, atol=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -221,6 +222,8 @@ def test_tower_rows_continue_the_box_downwards():
     between = at_height(field(box), box.bottom - 6.0)
     expected = 0.5 * (tower[:, 0, 1] + tower[:, 0, 2]) + [SPEED, 0, 0]
     np.testing.assert_allclose(between, expected, atol=1e-6)
+    last = at_height(field(box), box.lowest)
+    np.testing.assert_allclose(last, tower[:, 0, -1] + [SPEED, 0, 0], atol=1e-6)
     with pytest.raises(InputError, match=r"2\.5 m are missing below"):
         at_height(field(box), box.lowest - 2.5)
 

@@ -110,7 +110,12 @@ def require_room(box: Box, rotor: RotorExtent, duration: float, held_below: bool
         lacks |= dict.fromkeys(box.missing(x, y, z, time))
     if lacks:
         what = f"is too small for the rotor and its margin of {rotor.margin:.3g} m: "
-        hint = "take a larger box, a smaller margin_m, or (below the grid) below_box: hold"
+        below = all(lack.endswith("below") for lack in lacks)
+        hint = (
+            "below_box: hold keeps the lowest row down to the ground"
+            if below
+            else "take a larger box, or a smaller margin_m"
+        )
         raise InputError(box.source, what + "; ".join(lacks), hint)
 
 
