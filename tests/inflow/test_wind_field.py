@@ -226,6 +226,7 @@ def test_tower_rows_continue_the_box_downwards():
     np.testing.assert_allclose(last, tower[:, 0, -1] + [SPEED, 0, 0], atol=1e-6)
     with pytest.raises(InputError, match=r"2\.5 m are missing below"):
         at_height(field(box), box.lowest - 2.5)
+    np.testing.assert_array_equal(at_height(field(box, held_below=True), box.lowest - 2.5), last)
 
 
 def test_mean_wind_belongs_in_the_profile_or_in_the_box():
