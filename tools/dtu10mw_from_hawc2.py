@@ -201,16 +201,16 @@ def blade(folder: Path, htc: str, polars: list) -> dict:
     ae_grid = ae[:, 0] / ae[-1, 0]
     grid = np.unique(np.round(np.concatenate([axis_grid, ae_grid]), 6))
     chord, thickness = (np.interp(grid, ae_grid, ae[:, k]) for k in (1, 2))
-    half_chord_behind = PchipInterpolator(axis_grid, behind)
+    half_chord_behind = PchipInterpolator(axis_grid, behind)(grid)
     st = read_st(folder / "data/DTU_10MW_RWT_Blade_st.dat")
     st_grid = st["r"] / st["r"][-1]
-    stiffness, inertia = section_matrices(st, half_chord_behind(st_grid))
+    stiffness, inertia = section_matrices(st, np.interp(st_grid, grid, half_chord_behind))
     return {
         "reference_axis": {k: on_grid(axis_grid, axis[:, i]) for i, k in enumerate("xyz")},
         "outer_shape": {
             "chord": on_grid(grid, chord),
             "twist": on_grid(grid, -PchipInterpolator(axis_grid, c2[:, 3])(grid)),
-            "section_offset_y": on_grid(grid, 0.5 * chord - half_chord_behind(grid)),
+            "section_offset_y": on_grid(grid, 0.5 * chord - half_chord_behind),
             "rthick": on_grid(grid, thickness / 100),
             "airfoils": airfoil_places(grid, thickness, polars),
         },
@@ -336,9 +336,9 @@ def drivetrain() -> dict:
 
 
 def control() -> dict:
-    """Gains that HAWCStab2 found for the published controller, at the low-speed shaft."""
-    pitch = np.arange(0.0, 25.0, 2.0)
-    schedule = 1 / (1 + pitch / 443.50013 + pitch**2 / 674.52656)
+    """Constants of the published controller, at the low-speed shaft (DTU_10MW_RWT htc files)."""
+    pitch = np.arange(0.0, 27.0, 2.0)
+    schedule = 1 / (1 + pitch / 198.32888 + pitch**2 / 693.22213)
     deg_per_rpm = 6.0  # of one rad per rad/s
     wind = np.array([4.0, 5.0, 6.0, 7.0, 11.0])
     return {
@@ -346,7 +346,6 @@ def control() -> dict:
         "rated_rotor_speed": 9.6,
         "rated_power": 10.0e6,
         "max_gen_torque": 15.6e6 / GEAR_RATIO,
-        "max_torque_rate": 15.6e6 / GEAR_RATIO / 2.01,
         "fine_pitch": 0.0,
         "optimal_tsr": 7.5,
         "min_pitch_table": {
@@ -354,14 +353,14 @@ def control() -> dict:
             "min_pitch": np.array([2.75123, 1.96647, 0.89562, 0.0, 0.0]),
         },
         "min_pitch_limit": 0.0,
-        "max_pitch_limit": 82.0,
+        "max_pitch_limit": 90.0,
         "max_pitch_rate": 10.0,
-        "lpf_frequency": 2 * np.pi * 0.4,
+        "lpf_frequency": 2 * np.pi * 0.2,
         "lpf_damping": 0.7,
-        "region2_k": 0.100501e8 / GEAR_RATIO * (np.pi / 30) ** 2,
-        "pitch_kp": {"pitch_angle": pitch, "kp": 0.534615 * deg_per_rpm * schedule},
-        "pitch_ki": {"pitch_angle": pitch, "ki": 0.143961 * deg_per_rpm * schedule},
-        "constant_power": 0,
+        "region2_k": 0.100131e8 / GEAR_RATIO * (np.pi / 30) ** 2,
+        "pitch_kp": {"pitch_angle": pitch, "kp": 0.524485 * deg_per_rpm * schedule},
+        "pitch_ki": {"pitch_angle": pitch, "ki": 0.141233 * deg_per_rpm * schedule},
+        "constant_power": 1,
     }
 
 
