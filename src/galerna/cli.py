@@ -220,19 +220,17 @@ def main(arguments: list[str] | None = None) -> Any:
     except OSError as error:
         _report(InputError(str(error.filename or "file"), error.strerror or str(error)))
         sys.exit(InputError.exit_code)
-    except KeyboardInterrupt:
-        print("interrupted; the records so far are in the result", file=sys.stderr)
-        sys.exit(130)
 
 
-def _report(error: Exception) -> None:
-    """An error on stderr, its first word marked where the terminal can."""
+def _report(error: GalernaError) -> None:
+    """An error on stderr without a traceback, with the notes on it."""
     from rich.console import Console
     from rich.markup import escape
 
-    Console(stderr=True, highlight=False, soft_wrap=True).print(
-        f"[bold red]error[/] {escape(str(error))}"
-    )
+    console = Console(stderr=True, highlight=False, soft_wrap=True)
+    console.print(f"[bold red]error[/] {escape(str(error))}")
+    for note in getattr(error, "__notes__", ()):
+        console.print(escape(note))
 
 
 if __name__ == "__main__":

@@ -5,6 +5,8 @@ from __future__ import annotations
 import json
 import shutil
 import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,6 +18,24 @@ if TYPE_CHECKING:
     from galerna.inflow.field import WindField
 
 
+class InterruptedRunError(GalernaError):
+    """The user pressed Ctrl-C."""
+
+    exit_code = 130
+
+
+@contextmanager
+def interruptible() -> Iterator[None]:
+    """Turn Ctrl-C into an error that keeps the notes on what was saved."""
+    try:
+        yield
+    except KeyboardInterrupt as interrupt:
+        error = InterruptedRunError("interrupted")
+        for note in getattr(interrupt, "__notes__", ()):
+            error.add_note(note)
+        raise error from None
+
+
 def run(case: str, output: Path | None, duration: float | None, overwrite: bool) -> None:
     """Simulate a case with a progress bar and print the statistics of its result."""
     from galerna import running
@@ -24,18 +44,11 @@ def run(case: str, output: Path | None, duration: float | None, overwrite: bool)
 
     loaded = load(case)
     path = output or _default_output(case)
-    try:
+    progress = [best(sys.stderr.isatty())]
+    with interruptible():
         result = running.run(
-            loaded,
-            path,
-            duration=duration,
-            overwrite=overwrite,
-            callbacks=[best(sys.stderr.isatty())],
+            loaded, path, duration=duration, overwrite=overwrite, callbacks=progress
         )
-    except (GalernaError, KeyboardInterrupt):
-        if path.exists():
-            print(f"the records so far are in {path}", file=sys.stderr)
-        raise
     tables.print_statistics(result, path)
 
 
@@ -68,7 +81,8 @@ def demo(folder: Path, duration: float | None) -> None:
     machine = build_machine(loaded)
     tables.print_pairs(machine.describe())
     path = folder / "demo.nc"
-    result = running.simulate(machine, path, True, [best(sys.stderr.isatty())])
+    with interruptible():
+        result = running.simulate(machine, path, True, [best(sys.stderr.isatty())])
     tables.print_statistics(result, path)
     _print_pictures(plot_result(result, folder, wind=machine.wind.field))
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from galerna import turbine as turbines
 from galerna.aero.bem.model import BladeElementMomentum
+from galerna.aero.body_drag import BodyDrag
 from galerna.case import LoadedCase, Series, parse
 from galerna.contract import Array, Channel, LoadModel
 from galerna.errors import InputError
@@ -101,14 +102,11 @@ def wind_of_result(dataset: xarray.Dataset) -> WindField:
 
 
 def _load_models(case: LoadedCase, turbine: Turbine, wind: WindField) -> dict[str, LoadModel]:
-    settings = case.case
-    density = settings.air_density_kg_m3
-    models: dict[str, LoadModel] = {
-        "rotor": BladeElementMomentum(
-            turbine, wind, air_density=density, options=settings.aerodynamics
-        )
-    }
-    return models
+    settings, density = case.case, case.case.air_density_kg_m3
+    rotor = BladeElementMomentum(turbine, wind, air_density=density, options=settings.aerodynamics)
+    if not settings.tower_and_nacelle_drag:
+        return {"rotor": rotor}
+    return {"rotor": rotor, "bodies": BodyDrag(turbine, wind, air_density=density)}
 
 
 def _operation(case: LoadedCase, turbine: Turbine, wind_speed: float) -> PrescribedOperation:

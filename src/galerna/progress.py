@@ -10,56 +10,65 @@ import numpy as np
 from galerna.simulation import Callback, Simulation
 from galerna.units import DEG, RPM
 
-REFRESH = 0.2  #: s of the wall clock between two looks at the machine
-LINE_EVERY = 10.0  #: s of the wall clock between two lines where there is no terminal
 
+class Pace(Callback):
+    """Knows how fast a run goes, and looks at it every ``interval`` s of the wall clock.
 
-class ProgressLine(Callback):
-    """A line on stderr every ten seconds: simulated time, real-time factor, remaining time."""
+    The clock starts after the first step, which also compiles the kernels.
+    """
+
+    interval: float
 
     def start(self, simulation: Simulation, end: float) -> None:
-        self._end, self._first = end, simulation.time
-        self._began = self._last = time.perf_counter()
+        self._end, self._began = end, 0.0
 
     def accepted(self, simulation: Simulation) -> None:
         now = time.perf_counter()
-        if now - self._last >= LINE_EVERY:
+        if not self._began:
+            self._first, self._began, self._last = simulation.time, now, now
+        elif now - self._last >= self.interval:
             self._last = now
-            print(self._line(simulation, now), file=sys.stderr, flush=True)
+            factor = (simulation.time - self._first) / (now - self._began)
+            self.show(simulation, factor, (self._end - simulation.time) / factor)
 
-    def _line(self, simulation: Simulation, now: float) -> str:
-        factor = (simulation.time - self._first) / (now - self._began)
-        remaining = (self._end - simulation.time) / factor
-        at = f"{simulation.time:.1f} of {self._end:.1f} s"
-        return f"{at}, {factor:.1f} x real time, {remaining:.0f} s left, {machine(simulation)}"
+    def show(self, simulation: Simulation, factor: float, remaining: float) -> None:
+        """Show a run that goes ``factor`` times real time and ends in ``remaining`` s."""
+        raise NotImplementedError
 
 
-class ProgressBar(Callback):
+class ProgressLine(Pace):
+    """A line on stderr every ten seconds."""
+
+    interval = 10.0
+
+    def show(self, simulation: Simulation, factor: float, remaining: float) -> None:
+        at = f"{simulation.time:.1f} of {self._end:.1f} s, {factor:.1f} x real time"
+        print(f"{at}, {remaining:.0f} s left, {machine(simulation)}", file=sys.stderr, flush=True)
+
+
+class ProgressBar(Pace):
     """A bar with simulated time, real-time factor, remaining time, rotor speed, pitch, power."""
 
-    def start(self, simulation: Simulation, end: float) -> None:
-        from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+    interval = 0.2
 
+    def start(self, simulation: Simulation, end: float) -> None:
+        from rich.progress import BarColumn, Progress, TextColumn
+
+        super().start(simulation, end)
         self._progress = Progress(
             TextColumn("{task.completed:7.1f} of {task.total:.1f} s"),
             BarColumn(bar_width=24),
-            TextColumn("{task.fields[factor]:6.1f} x real time"),
-            TimeRemainingColumn(),
-            TextColumn("{task.fields[machine]}"),
+            TextColumn("{task.description}"),
             transient=True,
         )
-        self._first, self._began, self._last = simulation.time, time.perf_counter(), 0.0
-        self._task = self._progress.add_task("", total=end, factor=0.0, machine="")
+        self._task = self._progress.add_task("compiling", total=end, completed=simulation.time)
         self._progress.start()
 
-    def accepted(self, simulation: Simulation) -> None:
-        now = time.perf_counter()
-        if now - self._last < REFRESH:
-            return
-        self._last = now
-        factor = (simulation.time - self._first) / (now - self._began)
-        state = machine(simulation)
-        self._progress.update(self._task, completed=simulation.time, factor=factor, machine=state)
+    def show(self, simulation: Simulation, factor: float, remaining: float) -> None:
+        minutes, seconds = divmod(round(remaining), 60)
+        pace = f"{factor:.1f} x real time, {minutes}:{seconds:02d} left"
+        text = f"{pace}  {machine(simulation)}"
+        self._progress.update(self._task, completed=simulation.time, description=text)
 
     def finish(self, simulation: Simulation) -> None:
         self._progress.stop()

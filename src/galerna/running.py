@@ -62,6 +62,7 @@ def simulate(
     except (GalernaError, KeyboardInterrupt) as error:
         reason = str(error).splitlines()[0] if str(error) else "interrupted"
         result.finish(f"stopped at {machine.simulation.time:.6g} s: {reason}")
+        error.add_note(f"the records so far are in {output}")
         raise
     return result.finish(machine.simulation.stopped or "complete")
 

@@ -15,6 +15,7 @@ from galerna.turbine.model import Turbine
 
 MARGIN_ON_LAND = 0.1  #: of the rotor radius, for flap, tilt and what is left of the last cell
 MARGIN_AFLOAT = 0.25  #: of the rotor radius, for sway, heave and roll of the platform as well
+SINGLE_PRECISION = 1e-6  #: relative; files hold spacings and heights as float32
 SHORTEST_BOX = 600.0  #: s; a shorter one lacks the slow part of the spectrum
 
 
@@ -99,9 +100,10 @@ def size_for(
 
 def require_room(box: Box, rotor: RotorExtent, duration: float, held_below: bool) -> None:
     """InputError that names each side, and the time, by which a box is too small for a rotor."""
-    top = rotor.hub_height + rotor.half_width
-    bottom = min(rotor.hub_height - rotor.half_width, rotor.lowest)
-    corners = [(-rotor.half_width, top, 0.0), (rotor.half_width, top, duration)]
+    half_width = rotor.half_width * (1.0 - SINGLE_PRECISION)
+    top = rotor.hub_height + half_width
+    bottom = min(rotor.hub_height - half_width, rotor.lowest + half_width * SINGLE_PRECISION)
+    corners = [(-half_width, top, 0.0), (half_width, top, duration)]
     if not held_below:
         corners.append((0.0, bottom, 0.0))
     lacks: dict[str, None] = {}  # in order, each once

@@ -16,7 +16,7 @@ from galerna.results.log import Layout, Log, read_log
 if TYPE_CHECKING:
     import xarray
 
-COORDINATE_UNITS = {"time": "s", "blade": "", "radius": "m", "span": "", "height": "m"}
+COORDINATE_UNITS = {"time": "s", "radius": "m"}
 
 
 def log_of(path: Path) -> Path:

@@ -1,0 +1,239 @@
+"""The command line: exit codes, what is printed, and how fast it starts."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+from typer.testing import CliRunner
+
+from galerna.cli import app, main
+from galerna.results import open_result
+
+CASE = """\
+galerna: 1
+turbine: nrel5mw
+duration_s: 2
+time_step_s: 0.05
+inflow: {wind_speed_m_s: 8.0}
+operation: {rotor_speed_rpm: 9.16, pitch_deg: 0.0}
+"""
+COMMANDS = [command.name or command.callback.__name__ for command in app.registered_commands]
+
+
+@pytest.fixture
+def case(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    path = tmp_path / "case.yaml"
+    path.write_text(CASE)
+    return path
+
+
+def galerna(*arguments):
+    """Exit code of a command."""
+    with pytest.raises(SystemExit) as exit_:
+        main([str(a) for a in arguments])
+    return exit_.value.code
+
+
+def test_importing_galerna_is_quick_and_silent():
+    code = "import time; t = time.perf_counter(); import galerna; print(time.perf_counter() - t)"
+    process = subprocess.run(
+        [sys.executable, "-c", code], capture_output=True, text=True, check=True
+    )
+    assert float(process.stdout) < 1.0
+    assert process.stderr == ""
+
+
+def test_help_is_quick_and_loads_nothing_heavy():
+    code = (
+        "import sys, galerna.cli as cli\n"
+        "try: cli.main(['--help'])\n"
+        "except SystemExit: pass\n"
+        "heavy = {'numba', 'xarray', 'matplotlib', 'scipy', 'pydantic'} & set(sys.modules)\n"
+        "assert not heavy, heavy"
+    )
+    begin = time.perf_counter()
+    subprocess.run([sys.executable, "-c", code], capture_output=True, check=True)
+    assert time.perf_counter() - begin < 2.0  # 0.3 s on an idle machine
+
+
+@pytest.mark.parametrize("name", [c.replace("_", "-") for c in COMMANDS])
+def test_help_of_every_command_has_an_example(name):
+    result = CliRunner().invoke(app, [name, "--help"], env={"COLUMNS": "200"})
+    assert result.exit_code == 0
+    assert f"galerna {name}" in result.stdout.split("Example:")[1]
+
+
+def test_run_writes_beside_the_case_and_prints_a_table(case, capsys):
+    assert galerna("run", case) == 0
+    assert open_result(case.with_suffix(".nc")).sizes["time"] == 20
+    printed = capsys.readouterr().out
+    assert "aerodynamic power" in printed
+    assert "case.nc" in printed
+
+
+def test_run_does_not_replace_a_result_unasked(case, capsys):
+    assert galerna("run", case, "--output", "r.nc", "--duration", "0.5") == 0
+    assert galerna("run", case, "--output", "r.nc") == 2
+    assert "--overwrite" in capsys.readouterr().err
+    assert galerna("run", case, "--output", "r.nc", "--overwrite") == 0
+    assert open_result("r.nc").sizes["time"] == 20
+
+
+def test_bad_input_is_exit_code_2_and_no_traceback(case, capsys):
+    case.write_text(CASE.replace("turbine:", "turbin:"))
+    assert galerna("check", case) == 2
+    captured = capsys.readouterr()
+    assert "did you mean 'turbine'" in captured.err
+    assert "Traceback" not in captured.err + captured.out
+
+
+def test_a_bad_option_is_exit_code_2():
+    assert galerna("run", "--no-such-option") == 2
+    assert galerna("rnu") == 2
+
+
+def test_no_convergence_is_exit_code_3(case, capsys, monkeypatch):
+    from galerna.errors import ConvergenceError
+    from galerna.simulation import Simulation
+
+    def fail(self):
+        raise ConvergenceError("rotor", "no balance", time=0.5)
+
+    monkeypatch.setattr(Simulation, "advance", fail)
+    assert galerna("run", case) == 3
+    error = capsys.readouterr().err
+    assert "rotor at t = 0.5 s: no balance" in error
+    assert "the records so far are in" in error
+
+
+def test_a_path_that_cannot_be_written_is_exit_code_2(case, capsys):
+    assert galerna("run", case, "--output", "/proc/no/r.nc") == 2
+    assert "Traceback" not in capsys.readouterr().err
+
+
+def test_check_says_what_would_run(case, capsys):
+    assert galerna("check", case) == 0
+    printed = capsys.readouterr().out
+    assert "40 steps of 0.05 s" in printed
+    assert "ready to run" in printed
+
+
+def test_interrupting_leaves_a_result(case):
+    """Ctrl-C: exit code 130, no traceback, a readable result."""
+    arguments = ["run", str(case), "--duration", "100000"]
+    code = f"from galerna.cli import main; main({arguments!r})"
+    process = subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.PIPE, text=True)
+    log = case.with_suffix(".nc.log")
+    limit = time.monotonic() + 60.0
+    while not (log.exists() and log.stat().st_size > 50_000) and time.monotonic() < limit:
+        time.sleep(0.05)
+    process.send_signal(signal.SIGINT)
+    _, error = process.communicate(timeout=60)
+    assert process.returncode == 130, error
+    assert "interrupted" in error
+    assert "Traceback" not in error
+    assert open_result(case.with_suffix(".nc")).sizes["time"] > 0
+
+
+def test_turbines_and_their_figures(capsys):
+    assert galerna("turbines") == 0
+    assert "nrel5mw_oc3" in capsys.readouterr().out
+    assert galerna("turbine", "nrel5mw") == 0
+    assert "NREL/TP-500-38060" in capsys.readouterr().out
+
+
+def test_power_curve_as_table_picture_and_file(tmp_path, capsys):
+    plot, csv = tmp_path / "c.png", tmp_path / "c.csv"
+    assert galerna("power-curve", "nrel5mw", "--plot", plot, "--csv", csv, "--step", 7) == 0
+    assert "C_P" in capsys.readouterr().out
+    assert plot.stat().st_size > 10_000
+    assert len(csv.read_text().splitlines()) == 5
+
+
+TURBULENT = CASE.replace(
+    "{wind_speed_m_s: 8.0}",
+    "{wind_speed_m_s: 8.0, turbulence: {kind: mann, turbulence_intensity: 0.1,"
+    " points_across: 8, time_step_s: 0.4}}",
+)
+
+
+def test_wind_is_described_written_and_drawn(case, capsys):
+    case.write_text(TURBULENT)
+    assert galerna("wind", case, "--bts", "w.bts", "--hawc2", "w", "--plot", "w.png") == 0
+    assert "Mann box" in capsys.readouterr().out
+    assert {"w.bts", "w_u.bin", "w_v.bin", "w_w.bin", "w.png"} <= set(os.listdir())
+
+
+def test_the_written_wind_drives_the_same_rotor(case):
+    """The TurbSim file of a case's wind gives the case's loads, to its 16-bit resolution."""
+    case.write_text(TURBULENT)
+    assert galerna("wind", case, "--bts", "w.bts") == 0
+    assert galerna("run", case, "--output", "a.nc") == 0
+    start = TURBULENT.index("inflow:")
+    file = "inflow: {turbulence: {kind: file, path: w.bts}}\n" + CASE.splitlines()[-1]
+    case.write_text(TURBULENT[:start] + file)
+    assert galerna("run", case, "--output", "b.nc") == 0
+    thrust = [open_result(name)["rotor_thrust"].values for name in ("a.nc", "b.nc")]
+    assert abs(thrust[1] - thrust[0]).max() < 1e-3 * thrust[0].max()
+
+
+def test_wind_without_turbulence_cannot_be_written(case, capsys):
+    assert galerna("wind", case, "--bts", "w.bts") == 2
+    assert "no turbulence to write" in capsys.readouterr().err
+
+
+def test_plot_and_export_a_result(case, capsys):
+    assert galerna("run", case) == 0
+    result = case.with_suffix(".nc")
+    assert galerna("plot", result, "-c", "rotor_thrust", "-c", "angle_of_attack") == 0
+    folder = case.with_name("case_plots")
+    assert {p.name for p in folder.iterdir()} == {"rotor.png", "spanwise.png"}
+    assert galerna("plot", result, "-c", "rotor_trust") == 2
+    assert "did you mean 'rotor_thrust'" in capsys.readouterr().err
+    assert galerna("export", result, "r.outb") == 0
+    assert galerna("export", result, "r.csv") == 0
+    assert galerna("export", result, "r.xls") == 2
+
+
+def test_cite_lists_what_the_case_uses(case, capsys):
+    case.write_text(TURBULENT + "aerodynamics: {model: bem, dynamic_inflow: none}\n")
+    assert galerna("cite", case) == 0
+    printed = capsys.readouterr().out
+    assert "10.1002/we.1636" in printed
+    assert "Mann" in printed
+    assert "Snel" not in printed
+    assert galerna("cite", case, "--bibtex") == 0
+    assert "@article{Ning2014," in capsys.readouterr().out
+
+
+def test_validate_lists_its_cases_and_refuses_unknown_ones(capsys):
+    assert galerna("validate", "--list") == 0
+    assert "what it holds" in capsys.readouterr().out
+    assert galerna("validate", "no_such_group") == 2
+
+
+def test_the_printed_schema_is_json(capsys):
+    assert galerna("schema") == 0
+    assert json.loads(capsys.readouterr().out)["properties"]["turbine"]["type"] == "string"
+
+
+def test_progress_is_a_line_now_and_then_where_there_is_no_terminal(capsys):
+    from machines import Spring
+    from test_simulation import spinning
+
+    from galerna.progress import ProgressLine
+
+    class Eager(ProgressLine):
+        interval = 0.0
+
+    spinning(Spring()).run(1.0, [Eager()])
+    lines = capsys.readouterr().err.splitlines()
+    assert len(lines) == 9
+    assert "of 1.0 s" in lines[0]
+    assert "x real time" in lines[0]
+    assert "9.55 rpm" in lines[0]
