@@ -13,6 +13,7 @@ from galerna.turbine.model import Array
 from galerna.turbine.windio.yamlfile import Document, Keys
 
 _REQUIRED: Any = object()
+_LARGEST = 1e100  # beyond any quantity of a turbine; products of a few stay finite
 
 
 class Block:
@@ -69,7 +70,7 @@ class Block:
         value = self.value(key)
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise self.error(f"expected a number, found {describe(value)}", "", key)
-        if not (abs(value) < inf and low <= value <= high):
+        if not (abs(value) < _LARGEST and low <= value <= high):
             raise self.error(f"expected {_range(low, high)}, found {describe(value)}", "", key)
         return float(value)
 
@@ -96,6 +97,8 @@ class Block:
         if not np.isfinite(values).all():
             i = int(np.flatnonzero(~np.isfinite(values))[0])
             raise self.error(f"value {i + 1} is {values[i]}; all must be finite", "", key)
+        if (np.abs(values) > _LARGEST).any():
+            raise self.error("holds a number too large to compute with", "", key)
         if length is not None and len(values) != length:
             raise self.error(f"holds {len(values)} values where {length} are expected", "", key)
         if (values < low).any():

@@ -35,7 +35,9 @@ def _blocks(items: Sequence[Mapping[str, Any]], indent: str) -> Iterator[str]:
 
 
 def _is_list_of_blocks(value: Any) -> bool:
-    return isinstance(value, list) and bool(value) and isinstance(value[0], Mapping)
+    if not isinstance(value, list) or not value:
+        return False
+    return all(isinstance(item, Mapping) and item for item in value)
 
 
 def _scalar(value: Any) -> str:
@@ -53,5 +55,8 @@ def _scalar(value: Any) -> str:
             return json.dumps(value, ensure_ascii=False)
         case list() | tuple():
             return "[" + ", ".join(map(_scalar, value)) + "]"
+        case Mapping():
+            pairs = (f"{json.dumps(key)}: {_scalar(item)}" for key, item in value.items())
+            return "{" + ", ".join(pairs) + "}"
         case _:
-            return "{}"
+            raise TypeError(f"{type(value).__name__} has no YAML form here")

@@ -14,6 +14,7 @@ from galerna.errors import InputError
 Keys = tuple[str | int, ...]
 
 LARGEST_FILE = 64_000_000  #: bytes
+LARGEST_TEXT = 4_000_000  #: characters beside rows of numbers: a parser in Python is slow
 MOST_VALUES = 5_000_000  #: after aliases are followed: a small file can expand without end
 DEEPEST_INCLUDE = 4
 
@@ -74,13 +75,16 @@ def _load(path: Path, depth: int) -> Any:
     if depth > DEEPEST_INCLUDE:
         raise InputError(str(path), f"files include each other more than {DEEPEST_INCLUDE} deep")
     text, rows = _take_rows(read_text(path))
+    if len(text) > LARGEST_TEXT:
+        what = f"holds {len(text) // 1_000_000} MB beside rows of numbers, more than any turbine"
+        raise InputError(str(path), what)
     try:
         return _parser(path, rows, depth).load(text)
     except MarkedYAMLError as e:
         line = f", line {e.problem_mark.line + 1}" if e.problem_mark else ""
         raise InputError(f"{path}{line}", f"is not valid YAML: {e.problem or e}") from e
     except (YAMLError, ValueError, TypeError, OverflowError, AttributeError, KeyError) as e:
-        raise InputError(str(path), f"is not valid YAML: {str(e).splitlines()[0]}") from e
+        raise InputError(str(path), f"is not valid YAML: {str(e).partition(chr(10))[0]}") from e
     except RecursionError as e:
         raise InputError(str(path), "nests too deeply to be a turbine") from e
 
@@ -101,7 +105,9 @@ def _take_rows(text: str) -> tuple[str, list[list[float]]]:
             return match[0]
         return f"{match[1]}!row {len(rows) - 1}" + match[2].count("\n") * "\n"
 
-    return (text, rows) if _BLOCK_TEXT.search(text) else (_ROW.sub(take, text), rows)
+    if "!row" in text or _BLOCK_TEXT.search(text):
+        return text, rows
+    return _ROW.sub(take, text), rows
 
 
 def _parser(path: Path, rows: list[list[float]], depth: int) -> Any:
@@ -111,7 +117,8 @@ def _parser(path: Path, rows: list[list[float]], depth: int) -> Any:
     class Constructor(SafeConstructor):
         pass
 
-    Constructor.add_constructor("!row", lambda _, node: rows[int(node.value)])
+    if rows:
+        Constructor.add_constructor("!row", lambda _, node: rows[int(node.value)])
     Constructor.add_constructor(
         "!include", lambda _, node: _load(_included(path, str(node.value)), depth + 1)
     )
