@@ -25,7 +25,7 @@ BLEND_START and BLEND_END of |alpha| its answer fades into the static polar.
 
 from __future__ import annotations
 
-from math import atan2, cos, pi, sin, sqrt
+from math import atan2, cos, pi, sqrt
 
 import numpy as np
 from numba import njit
@@ -133,13 +133,13 @@ def _look_up(table: Array, section: int, angle: float) -> tuple[float, float, fl
     place -= last * np.floor(place / last)
     left = min(int(place), last - 1)
     t = place - left
-    low, high = table[section, left], table[section, left + 1]
+    i, j, u = section, left + 1, 1.0 - t
     return (
-        low[0] + t * (high[0] - low[0]),
-        low[1] + t * (high[1] - low[1]),
-        low[2] + t * (high[2] - low[2]),
-        low[3] + t * (high[3] - low[3]),
-        low[4] + t * (high[4] - low[4]),
+        u * table[i, left, 0] + t * table[i, j, 0],
+        u * table[i, left, 1] + t * table[i, j, 1],
+        u * table[i, left, 2] + t * table[i, j, 2],
+        u * table[i, left, 3] + t * table[i, j, 3],
+        u * table[i, left, 4] + t * table[i, j, 4],
     )
 
 
@@ -165,8 +165,11 @@ def _rate_lift(slope: float, passage: float, torsion_rate: float) -> float:
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
 def _model_share(angle: float) -> float:
     """1 in flow from the front, 0 beyond BLEND_END, a half cosine between."""
-    place = (abs(angle) - BLEND_START) / (BLEND_END - BLEND_START)
-    return 0.5 + 0.5 * cos(pi * min(max(place, 0.0), 1.0))
+    if abs(angle) <= BLEND_START:
+        return 1.0
+    if abs(angle) >= BLEND_END:
+        return 0.0
+    return 0.5 + 0.5 * cos(pi * (abs(angle) - BLEND_START) / (BLEND_END - BLEND_START))
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
@@ -196,6 +199,44 @@ def start_stall(
     state[7] = point
 
 
+@njit(cache=True, error_model="numpy", fastmath=FASTMATH, inline="always")
+def _advance_lags(
+    state: Array,
+    table: Array,
+    section: int,
+    parameters: Array,
+    chord: float,
+    normal_velocity: float,
+    chordwise_velocity: float,
+    torsion_rate: float,
+    dt: float,
+    advanced: Array,
+) -> tuple[float, float]:
+    """Write the state at the step's end; return alpha_E rad and the lift of the pitch rate."""
+    slope = parameters[section, 0]
+    a_1, a_2 = parameters[section, 2], parameters[section, 3]
+    b_1, b_2 = parameters[section, 4], parameters[section, 5]
+    speed = sqrt(normal_velocity**2 + chordwise_velocity**2)
+    travelled = dt / _passage(chord, 0.5 * (state[5] + speed))
+
+    advanced[0] = first_order_lag(state[0], state[4], normal_velocity, b_1 * travelled)
+    advanced[1] = first_order_lag(state[1], state[4], normal_velocity, b_2 * travelled)
+    downwash = (1.0 - a_1 - a_2) * normal_velocity + a_1 * advanced[0] + a_2 * advanced[1]
+    effective = atan2(downwash, chordwise_velocity)
+
+    rate_lift = _rate_lift(slope, _passage(chord, speed), torsion_rate)
+    unlagged = _pressure_angle(effective, slope, rate_lift)
+    advanced[2] = first_order_lag(state[2], state[6], unlagged, travelled / parameters[section, 6])
+    static_point = _look_up(table, section, advanced[2])[3]
+    point = first_order_lag(state[3], state[7], static_point, travelled / parameters[section, 7])
+    advanced[3] = min(max(point, 0.0), 1.0)  # against rounding alone
+    advanced[4] = normal_velocity
+    advanced[5] = speed
+    advanced[6] = unlagged
+    advanced[7] = static_point
+    return effective, rate_lift
+
+
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
 def advance_stall(
     state: Array,
@@ -222,44 +263,31 @@ def advance_stall(
     The lags are exact for inputs linear over the step and stable for any ``dt``; at
     ``dt`` = 0 the lags are read as they stand. cl and cd are across and along the flow.
     """
-    slope, drag_at_zero = parameters[section, 0], parameters[section, 1]
-    a_1, a_2 = parameters[section, 2], parameters[section, 3]
-    b_1, b_2 = parameters[section, 4], parameters[section, 5]
-    speed = sqrt(normal_velocity**2 + chordwise_velocity**2)
-    travelled = dt / _passage(chord, 0.5 * (state[5] + speed))
-
-    advanced[0] = first_order_lag(state[0], state[4], normal_velocity, b_1 * travelled)
-    advanced[1] = first_order_lag(state[1], state[4], normal_velocity, b_2 * travelled)
-    downwash = (1.0 - a_1 - a_2) * normal_velocity + a_1 * advanced[0] + a_2 * advanced[1]
-    effective = atan2(downwash, chordwise_velocity)
-
-    rate_lift = _rate_lift(slope, _passage(chord, speed), torsion_rate)
-    unlagged = _pressure_angle(effective, slope, rate_lift)
-    advanced[2] = first_order_lag(state[2], state[6], unlagged, travelled / parameters[section, 6])
-    static_point = _look_up(table, section, advanced[2])[3]
-    point = first_order_lag(state[3], state[7], static_point, travelled / parameters[section, 7])
-    point = min(max(point, 0.0), 1.0)  # against rounding alone
-    advanced[3] = point
-    advanced[4] = normal_velocity
-    advanced[5] = speed
-    advanced[6] = unlagged
-    advanced[7] = static_point
-
+    effective, rate_lift = _advance_lags(
+        state,
+        table,
+        section,
+        parameters,
+        chord,
+        normal_velocity,
+        chordwise_velocity,
+        torsion_rate,
+        dt,
+        advanced,
+    )
     angle = atan2(normal_velocity, chordwise_velocity)
     share = _model_share(angle)
     if share == 0.0:
         static = _look_up(table, section, angle)
         return static[0], static[1], static[2]
-    lift, drag, moment, at_effective, attached_gain = _look_up(table, section, effective)
-    circulatory = lift + (point - at_effective) * attached_gain
-    separation = 0.5 * (sqrt(at_effective) - sqrt(point)) - 0.25 * (at_effective - point)
-    cl = circulatory + rate_lift * cos(angle)
-    cd = (
-        drag
-        + (drag - drag_at_zero) * separation
-        + circulatory * (angle - effective)
-        + rate_lift * sin(angle)
-    )
+    point, drag_at_zero = advanced[3], parameters[section, 1]
+    lift, drag, moment, static_point, attached_gain = _look_up(table, section, effective)
+    circulatory = lift + (point - static_point) * attached_gain
+    separation = 0.5 * (sqrt(static_point) - sqrt(point)) - 0.25 * (static_point - point)
+    rate_share = rate_lift / max(advanced[5], 1e-9)
+    cl = circulatory + rate_share * chordwise_velocity
+    cd = drag + (drag - drag_at_zero) * separation
+    cd += circulatory * (angle - effective) + rate_share * normal_velocity
     cm = moment - 0.5 * rate_lift
     if share < 1.0:
         static = _look_up(table, section, angle)
