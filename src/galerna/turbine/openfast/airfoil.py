@@ -7,7 +7,7 @@ import numpy as np
 from galerna.turbine import unsteady
 from galerna.turbine.model import Airfoil, Array, Polar, UnsteadyParameters
 from galerna.turbine.openfast.deck import Deck
-from galerna.turbine.outline import camber_line
+from galerna.turbine.outline import camber_line, suction_side_first
 from galerna.units import DEG
 
 _MILLION = 1e6
@@ -116,9 +116,7 @@ def _outline(deck: Deck) -> tuple[float, Array | None]:
     nose = int(np.argmin(outline[:, 0]))
     if not 2 <= nose < len(outline) - 2:
         raise shape.error("the coordinates do not run round the nose", "", start.line)
-    if outline[: nose + 1, 1].mean() < outline[nose:, 1].mean():
-        outline = outline[::-1].copy()
-    return float(points[0, 0]), outline
+    return float(points[0, 0]), suction_side_first(outline)
 
 
 def _trailing_edge(outline: Array) -> int:
