@@ -38,6 +38,7 @@ def beam(edge: float = 4e9, flap: float = 1e9) -> dict[str, Any]:
 
 def document() -> dict[str, Any]:
     straight = {"x": curve(0.0, 0.0), "y": curve(0.0, 0.0)}
+    massless = {"mass": 0.0, "location": [0.0] * 3, "inertia": [0.0] * 6}
     return {
         "windIO_version": "2.1",
         "name": "small",
@@ -57,10 +58,12 @@ def document() -> dict[str, Any]:
                 },
                 "structure": {"anchors": [], "layers": [], "elastic_properties": beam()},
             },
-            "hub": {"diameter": 2.0, "cone_angle": 3.0, "cd": 0.5},
+            "hub": {"diameter": 2.0, "cone_angle": 3.0, "cd": 0.5, "elastic_properties": massless},
             "drivetrain": {
                 "outer_shape": {"uptilt": 5.0, "distance_tt_hub": 2.0, "overhang": 3.0},
                 "gearbox": {"gear_ratio": 50.0},
+                "generator": {"rpm_efficiency": {"grid": [1500.0], "values": [0.9]}},
+                "elastic_properties": massless,
             },
             "tower": {
                 "reference_axis": straight | {"z": curve(0.0, 30.0)},

@@ -135,6 +135,22 @@ def test_two_layers_make_the_wall_of_their_sum(tmp_path: Path) -> None:
     assert two.inertia == pytest.approx(one.inertia)
 
 
+def test_tube_agrees_with_the_one_in_windio_s_own_example() -> None:
+    """IEA 15 MW as shipped with windIO: bending stiffness there, computed by WISDEM."""
+    import windIO
+    from windIO.yaml import load_yaml
+
+    path = Path(windIO.__file__).parent / "examples" / "turbine" / "IEA-15-240-RWT.yaml"
+    turbine = load(path)
+    given = load_yaml(path)["components"]["tower"]["structure"]["elastic_properties"]
+    found = turbine.tower.structure
+    assert found.stiffness[0, 3, 3] == pytest.approx(given["stiffness_matrix"]["K44"][0], rel=1e-9)
+    assert found.mass[0] == pytest.approx(given["inertia_matrix"]["mass"][0], rel=1e-9)
+    assert any("inertia_tt" in note for note in turbine.notes)
+    assert any(note.startswith("monopile") for note in turbine.notes)
+    assert turbine.control.pitch_schedule[0, 1] > 0.0  # turned to pitch towards feather
+
+
 # airfoils ------------------------------------------------------------------------
 
 
@@ -270,6 +286,27 @@ def test_a_strange_key_that_resembles_none_is_noted(tmp_path: Path) -> None:
     data = document()
     data["control"]["peak_thrust_shaving"] = 1.0
     assert any("peak_thrust_shaving" in note for note in read(tmp_path, data).notes)
+
+
+@pytest.mark.parametrize("name", ["monopile", "jacket", "floating_platform", "mooring"])
+def test_a_foundation_that_is_not_read_is_noted(name: str, tmp_path: Path) -> None:
+    data = document()
+    data["components"][name] = {}
+    assert any(note.startswith(name) for note in read(tmp_path, data).notes)
+
+
+@pytest.mark.parametrize(
+    ("part", "key", "said"),
+    [
+        ("hub", "elastic_properties", "hub: no elastic properties"),
+        ("drivetrain", "elastic_properties", "nacelle: no elastic properties"),
+        ("drivetrain", "generator", "generator: no efficiency"),
+    ],
+)
+def test_what_the_file_lacks_is_noted(part: str, key: str, said: str, tmp_path: Path) -> None:
+    data = document()
+    del data["components"][part][key]
+    assert any(note.startswith(said) for note in read(tmp_path, data).notes)
 
 
 def test_version_one_is_refused_with_the_converter(tmp_path: Path) -> None:

@@ -50,6 +50,7 @@ def _refuse_other_versions(document: Block) -> None:
 
 def _turbine(document: Block, companion: Companion, notes: list[str]) -> Turbine:
     extra = companion.properties
+    notes += _left_out(document)
     blade, airfoils = read_blade(document, extra["blade"].get("damping_ratio"), notes)
     tower = read_tower(document, extra["tower"].get("damping_ratio"), notes)
     hub = replace(_hub(document), **extra["hub"])
@@ -73,6 +74,20 @@ def _turbine(document: Block, companion: Companion, notes: list[str]) -> Turbine
         description=document.text("comments", ""),
         notes=tuple(notes),
     )
+
+
+def _left_out(document: Block) -> list[str]:
+    """Notes on what stands in the file and is not read, or is needed and does not stand there."""
+    components, notes = document.block("components"), []
+    for name in ("monopile", "jacket", "floating_platform", "mooring"):
+        if components.has(name):
+            notes.append(f"{name}: not read; the tower stands rigidly at its base")
+    for name, block in (("hub", "hub"), ("nacelle", "drivetrain")):
+        if not components.block(block).has("elastic_properties"):
+            notes.append(f"{name}: no elastic properties in the file, so it has no mass")
+    if not components.optional("drivetrain", "generator").has("rpm_efficiency"):
+        notes.append("generator: no efficiency in the file, so it loses nothing")
+    return notes
 
 
 def _number_of_blades(assembly: Block) -> int:
