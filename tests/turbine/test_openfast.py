@@ -141,10 +141,17 @@ def test_beamdyn_sections_are_preferred(deck: Path) -> None:
     assert_allclose(
         s.twist, np.interp(s.span, [0, 0.5, 1], [13.308, 6.544, 0.106]) * DEG, atol=2e-4
     )
-    assert any("weigh" in note for note in turbine.notes)
     centre = turbine.blade.shape.normal_offset[2], turbine.blade.shape.leading_edge_offset[2]
     ahead = 0.1 * np.sin(6.544 * DEG)
     assert_allclose(centre, (0.1 * np.cos(6.544 * DEG), 0.25 * 3.748 - ahead), atol=2e-3)
+
+
+def test_beamdyn_sections_are_preferred_even_where_not_in_use(deck: Path) -> None:
+    """The deck's own ElastoDyn blade has another mass, and a note says so."""
+    edit(deck, "small.fst", '"NA"              BDBldFile(1)', '"parts/bd.dat" BDBldFile(1)')
+    turbine = load(deck)
+    assert_allclose(turbine.blade.structure.mass, [500.0, 100.0, 5.0])
+    assert any("weigh 10839 kg, ElastoDyn's 17838" in note for note in turbine.notes)
 
 
 def test_beamdyn_file_that_is_not_in_use_may_be_missing(deck: Path) -> None:

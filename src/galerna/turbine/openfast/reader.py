@@ -28,6 +28,7 @@ from galerna.turbine.openfast import aerodyn, elastodyn, servodyn
 from galerna.turbine.openfast.beamdyn import BeamBlade, check_axis, read_beamdyn
 from galerna.turbine.openfast.deck import Deck
 
+_BEAMDYN = 2  # CompElast
 _LENGTHS_AGREE = 0.01  # of the blade's length
 _MASSES_AGREE = 0.01
 _PLATFORM_MOTIONS = ("Sg", "Sw", "Hv", "R", "P", "Y")
@@ -109,7 +110,6 @@ class _Reader:
                 f"blade: BeamDyn's blade is {length:g} m long, AeroDyn's {wanted:g} m; "
                 "AeroDyn's nodes were placed by their fraction of its length"
             )
-        self._compare_masses(beam)
         nodes = replace(nodes, centers=nodes.centers * [1.0, 1.0, length / wanted])
         shape = _shape(nodes, used, beam.span, beam.axis)
         return used, Blade(beam.span, beam.axis, shape, beam.structure)
@@ -130,14 +130,26 @@ class _Reader:
         file = self._credit("blade.structure", self.elastodyn.file("BldFile(1)"))
         return elastodyn.read_blade_structure(file, length, self.notes)
 
+    def _beamdyn(self) -> BeamBlade | None:
+        """The BeamDyn blade if the deck names one that is there, whether it is in use or not."""
+        if not self.deck.names_file("BDBldFile(1)"):
+            return None
+        in_use = self.deck.integer("CompElast", 1) == _BEAMDYN
+        name = self.deck.text("BDBldFile(1)")
+        if not in_use and not self.deck.beside(name).is_file():
+            self.notes.append(f"blade: the deck names {name}, which is not there, and does not use")
+            return None
+        file = self.deck.file("BDBldFile(1)")
+        sections = self._credit("blade.structure", file.file("BldFile"))
+        beam = read_beamdyn(file, sections)
+        if not in_use:
+            self.notes.append("blade: sections from the deck's BeamDyn file, which it does not use")
+            self._compare_masses(beam)
+        return beam
+
     def _compare_masses(self, beam: BeamBlade) -> None:
-        """Say so where ElastoDyn, which the deck may use, has another blade mass than BeamDyn."""
-        if not self.elastodyn.names_file("BldFile(1)"):
-            return
-        file = self.elastodyn.beside(self.elastodyn.text("BldFile(1)"))
-        if not file.is_file():
-            return
-        modal = elastodyn.read_blade_structure(Deck.open(file), 1.0, [])
+        """Say so where ElastoDyn's blade, which the deck uses, has another mass than BeamDyn's."""
+        modal = elastodyn.read_blade_structure(self.elastodyn.file("BldFile(1)"), 1.0, [])
         length = elastodyn.blade_length(self.elastodyn)
         masses = [float(np.trapezoid(s.mass, s.span)) * length for s in (beam.structure, modal)]
         if abs(masses[0] - masses[1]) > _MASSES_AGREE * masses[1]:
@@ -145,21 +157,6 @@ class _Reader:
                 f"blade: BeamDyn's sections, taken here, weigh {masses[0]:.0f} kg, "
                 f"ElastoDyn's {masses[1]:.0f} kg"
             )
-
-    def _beamdyn(self) -> BeamBlade | None:
-        """The BeamDyn blade if the deck names one that is there, whether it is in use or not."""
-        if not self.deck.names_file("BDBldFile(1)"):
-            return None
-        in_use = self.deck.integer("CompElast", 1) == 2
-        name = self.deck.text("BDBldFile(1)")
-        if not in_use and not self.deck.beside(name).is_file():
-            self.notes.append(f"blade: the deck names {name}, which is not there, and does not use")
-            return None
-        if not in_use:
-            self.notes.append("blade: sections from the deck's BeamDyn file, which it does not use")
-        beamdyn = self.deck.file("BDBldFile(1)")
-        sections = self._credit("blade.structure", beamdyn.file("BldFile"))
-        return read_beamdyn(beamdyn, sections)
 
     def _warn_of_different_blades(self, deck: Deck, key: str) -> None:
         names = {deck.text(f"{key}({k})") for k in (1, 2, 3) if deck.has(f"{key}({k})")}
@@ -187,7 +184,7 @@ class _Reader:
         """A floating platform; that of a fixed substructure is left out."""
         ed = self.elastodyn
         if self.deck.integer("CompSub", 0) > 0:
-            self.notes.append("substructure: SubDyn is not read; the tower stands on the ground")
+            self.notes.append("substructure: SubDyn is not read; the tower is clamped at its base")
             return None
         if not any(ed.flag(f"Ptfm{motion}DOF", False) for motion in _PLATFORM_MOTIONS):
             return None
