@@ -31,6 +31,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from galerna.aero.bem.attached_flow import attached_line
 from galerna.aero.bem.lag import FASTMATH, first_order_lag
 
 Array = NDArray[np.float64]
@@ -40,7 +41,7 @@ JONES = (0.165, 0.335, 0.0455, 0.3)  #: A1, A2, b1, b2 of the flat plate (R. T. 
 PRESSURE_LAG, SEPARATION_LAG = 1.7, 3.0  #: T_p, T_f in half-chords (Hansen et al., 2004)
 BLEND_START, BLEND_END = pi / 4.0, pi / 3.0
 SLOWEST_PASSAGE = 50.0  #: s, largest c / 2U, so that a calm leaves finite time constants
-SLOPE_RANGE = (np.radians(1.0), np.radians(15.0))  #: |alpha - alpha_0| searched for the slope
+UNDECIDED = np.radians(2.5)  #: about zero lift, where Kirchhoff's quotient is 0/0
 
 COLUMNS = 5  #: cl, cd, cm, f_st, cl_att - cl_fs
 PARAMETERS = 8  #: see section_parameters
@@ -54,7 +55,9 @@ def separation_table(table: Array, zero_lift_angle: Array) -> tuple[Array, Array
     table with two further columns (n,m,5), the static separation point f_st and
     cl_att - cl_fs, and (n,3): the slope of the attached lift 1/rad, the zero-lift angle rad
     and the drag coefficient there. A section without lift has slope 0 and stays static.
-    Source: Hansen et al. (2004), their separation function and fully separated lift.
+    Source: Hansen et al. (2004), their separation function and fully separated lift; the
+    slope is the attached line's, as theirs, the steepest chord of the polar, takes a kink
+    near zero lift for the slope.
     """
     angle = np.linspace(-pi, pi, table.shape[1])
     wide = np.zeros((*table.shape[:2], COLUMNS))
@@ -62,8 +65,7 @@ def separation_table(table: Array, zero_lift_angle: Array) -> tuple[Array, Array
     lift_line = np.zeros((len(table), 3))
     for section, near in enumerate(zero_lift_angle):
         lift = table[section, :, 0]
-        zero = _zero_lift_angle(angle, lift, near)
-        slope = _attached_slope(angle, lift, zero)
+        zero, slope = attached_line(angle, lift, near)
         point = _separation_point(angle, lift, zero, slope)
         attached = slope * (angle - zero)
         root = np.sqrt(point)
@@ -74,36 +76,22 @@ def separation_table(table: Array, zero_lift_angle: Array) -> tuple[Array, Array
     return wide, lift_line
 
 
-def _zero_lift_angle(angle: Array, lift: Array, near: float) -> float:
-    """The rising zero of the lift nearest to ``near``; ``near`` itself if there is none."""
-    left = np.flatnonzero((lift[:-1] <= 0.0) & (lift[1:] > 0.0))
-    if len(left) == 0:
-        return float(near)
-    share = -lift[left] / (lift[left + 1] - lift[left])
-    zeros = angle[left] + share * (angle[left + 1] - angle[left])
-    return float(zeros[np.argmin(np.abs(zeros - near))])
-
-
-def _attached_slope(angle: Array, lift: Array, zero: float) -> float:
-    """The steepest line from the zero-lift point to the polar, so that f_st stays below 1."""
-    distance = np.abs(angle - zero)
-    searched = (distance >= SLOPE_RANGE[0]) & (distance <= SLOPE_RANGE[1])
-    return max(float(np.max(lift[searched] / (angle[searched] - zero))), 0.0)
-
-
 def _separation_point(angle: Array, lift: Array, zero: float, slope: float) -> Array:
-    """Kirchhoff's f_st (m,), 0 from where the flow first separates fully on either side."""
+    """Kirchhoff's f_st (m,), 0 from where the flow first separates fully on either side.
+
+    Within UNDECIDED of zero lift the quotient says nothing: f_st runs straight across.
+    """
     if slope == 0.0:
         return np.ones_like(lift)
-    attached_lift = slope * (angle - zero)
-    away = np.abs(attached_lift) > 1e-9
-    ratio = np.divide(lift, attached_lift, out=np.ones_like(lift), where=away)
-    open_part = np.clip(2.0 * np.sqrt(np.clip(ratio, 0.0, 1.0)) - 1.0, 0.0, 1.0)
+    away = np.abs(angle - zero) > UNDECIDED
+    ratio = np.divide(lift, slope * (angle - zero), out=np.ones_like(lift), where=away)
+    root = np.clip(2.0 * np.sqrt(np.clip(ratio, 0.0, 1.0)) - 1.0, 0.0, 1.0)
+    point = np.interp(angle, angle[away], root[away] ** 2)
+    attached = (point > 0.0) | ~away
     start = int(np.searchsorted(angle, zero))
-    attached = open_part > 0.0
     attached[start:] = np.logical_and.accumulate(attached[start:])
     attached[:start] = np.logical_and.accumulate(attached[:start][::-1])[::-1]
-    return np.where(attached, open_part**2, 0.0)
+    return np.where(attached, point, 0.0)
 
 
 def section_parameters(

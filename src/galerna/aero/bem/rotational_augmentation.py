@@ -24,6 +24,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from galerna.aero.bem.attached_flow import attached_line
 from galerna.errors import InputError, did_you_mean
 from galerna.turbine.model import Polar
 
@@ -31,7 +32,6 @@ Array = NDArray[np.float64]
 Method = Literal["none", "snel", "du_selig"]
 
 FADE_START, FADE_END = np.radians(30.0), np.radians(50.0)
-ATTACHED = np.radians(5.0)  #: about zero lift, where slope and zero are read
 LEAST_SLOPE = 1.0  #: 1/rad; a section that lifts less (a cylinder) is left as it is
 
 
@@ -104,20 +104,3 @@ def augment_polar(
         tip_speed_ratio,
     )
     return replace(polar, lift=lift, drag=drag)
-
-
-def attached_line(angle: Array, lift: Array) -> tuple[float, float]:
-    """Zero-lift angle rad and slope 1/rad of a polar's attached flow, by least squares.
-
-    The rising zero of the lift nearest to 0 and ATTACHED to either side of it; slope 0
-    where there is none.
-    """
-    left = np.flatnonzero((lift[:-1] <= 0.0) & (lift[1:] > 0.0))
-    if len(left) == 0:
-        return 0.0, 0.0
-    share = -lift[left] / (lift[left + 1] - lift[left])
-    zeros = angle[left] + share * (angle[left + 1] - angle[left])
-    zero = float(zeros[np.argmin(np.abs(zeros))])
-    around = zero + np.linspace(-ATTACHED, ATTACHED, 41)
-    slope, offset = np.polyfit(around, np.interp(around, angle, lift), 1)
-    return float(-offset / slope), float(slope)
