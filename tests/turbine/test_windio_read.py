@@ -163,6 +163,12 @@ def test_positions_follow_the_thickness_where_none_are_given(tmp_path: Path) -> 
     assert read(tmp_path, data).blade.shape.airfoil_span == pytest.approx([0.0, 0.5, 1.0])
 
 
+def test_an_airfoil_where_the_blade_is_not_as_thick_is_noted(tmp_path: Path) -> None:
+    data = document()
+    outer_shape(data)["airfoils"][1]["spanwise_position"] = 0.9
+    assert any("is 0.28 thick" in note for note in read(tmp_path, data).notes)
+
+
 def test_configurations_are_blended_by_weight(tmp_path: Path) -> None:
     data = document()
     data["airfoils"][1]["polars"] = [
@@ -282,6 +288,13 @@ def test_a_missing_key_is_named(tmp_path: Path) -> None:
         read(tmp_path, data)
 
 
+def test_a_missing_key_finds_its_misspelling(tmp_path: Path) -> None:
+    path = small_windio.write(tmp_path, document())
+    path.write_text(path.read_text().replace("    z:", "    zz:", 1))
+    with pytest.raises(InputError, match="zz"):
+        windio.read(path, validate=False)
+
+
 def test_a_strange_key_that_resembles_none_is_noted(tmp_path: Path) -> None:
     data = document()
     data["control"]["peak_thrust_shaving"] = 1.0
@@ -344,6 +357,11 @@ def test_what_cannot_be_found_says_so(name: str) -> None:
 def test_a_name_mistyped_is_answered_with_the_nearest() -> None:
     with pytest.raises(InputError, match="did you mean 'nrel5mw'"):
         load("nrel5mv")
+
+
+def test_a_built_in_name_written_as_a_file_is_answered() -> None:
+    with pytest.raises(InputError, match="the built-in turbine is 'nrel5mw'"):
+        load("nrel5mw.yaml")
 
 
 # the companion ---------------------------------------------------------------------

@@ -22,6 +22,8 @@ def load(name_or_path: str | Path) -> Turbine:
     if str(name_or_path) in names():
         return windio.read(library.file(str(name_or_path)), validate=False)
     path = Path(name_or_path)
+    if path.stem in names() and not path.exists():
+        raise InputError(str(path), "is not there", f"the built-in turbine is {path.stem!r}")
     match path.suffix.lower():
         case ".yaml" | ".yml":
             return windio.read(path)

@@ -13,6 +13,8 @@ from galerna.turbine.windio.airfoils import blend_name, blend_weights, build_air
 from galerna.turbine.windio.block import Block, merged_grid
 from galerna.units import DEG
 
+_THICKNESS_TOLERANCE = 0.02  # relative thickness: what resampling a blade may round off
+
 _Curves = Mapping[str, tuple[Array, Array]]
 
 
@@ -25,6 +27,7 @@ def read_blade(
     outer = block.block("outer_shape")
     placed, airfoils = _placed_airfoils(document, outer)
     shape = _shape(outer, placed)
+    notes += _thickness_notes(shape, airfoils)
     structure = _structure(block, shape, damping_ratio, notes)
     return Blade(axis_span, axis, shape, structure), airfoils
 
@@ -94,6 +97,18 @@ def _placed_airfoils(
     if not placed:
         raise outer.error("no airfoil stands along the blade", "", "airfoils")
     return placed, airfoils
+
+
+def _thickness_notes(shape: BladeShape, airfoils: dict[str, Airfoil]) -> list[str]:
+    """Notes on airfoils that stand where the blade is not as thick as they are."""
+    along = np.interp(shape.airfoil_span, shape.span, shape.relative_thickness)
+    own = np.array([airfoils[name].relative_thickness for name in shape.airfoil_names])
+    return [
+        f"airfoil {shape.airfoil_names[i]} is {own[i]:g} thick and stands at span "
+        f"{shape.airfoil_span[i]:.3g}, where the blade is {along[i]:.3g} thick; the blade's "
+        "thickness is followed"
+        for i in np.flatnonzero(np.abs(along - own) > _THICKNESS_TOLERANCE)
+    ]
 
 
 def _position(entry: Block, thickness: float, grid: Array, along: Array) -> float:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from difflib import get_close_matches
 from math import inf, isfinite
 from typing import Any
 
 import numpy as np
 
-from galerna.errors import InputError, did_you_mean
+from galerna.errors import InputError
 from galerna.turbine.model import Array
 from galerna.turbine.windio.yamlfile import Document, Keys
 
@@ -35,7 +36,7 @@ class Block:
     def value(self, key: str) -> Any:
         """The raw value of a key that must be there."""
         if not self.has(key):
-            raise self.error(f"{key!r} is missing", did_you_mean(key, map(str, self.data)))
+            raise self.error(f"{key!r} is missing", meant(key, self.data))
         return self.data[key]
 
     def block(self, *path: str) -> Block:
@@ -134,6 +135,13 @@ def merged_grid(*grids: Array) -> Array:
     """All points of several grids, ascending; points closer than rounding are one."""
     merged = np.unique(np.concatenate(grids))
     return merged[np.append(True, np.diff(merged) > 1e-9 * (merged[-1] - merged[0]))]
+
+
+def meant(missing: str, found: Iterable[Any]) -> str:
+    """Which of the keys that were found may be a misspelling of a missing one."""
+    names = [str(key) for key in found]
+    near = get_close_matches(missing, names, n=1, cutoff=0.6)
+    return f"{near[0]!r} may be meant for it" if near else ""
 
 
 def describe(value: Any) -> str:

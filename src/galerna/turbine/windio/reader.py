@@ -17,6 +17,7 @@ from galerna.turbine.windio.schema import validate_document
 from galerna.turbine.windio.tower import read_tower
 from galerna.units import DEG
 
+_FOUNDATIONS = ("monopile", "jacket", "floating_platform", "mooring")
 _HUB_HEIGHT_TOLERANCE = 0.005  # of the hub height: what files round away
 
 
@@ -79,9 +80,8 @@ def _turbine(document: Block, companion: Companion, notes: list[str]) -> Turbine
 def _left_out(document: Block) -> list[str]:
     """Notes on what stands in the file and is not read, or is needed and does not stand there."""
     components, notes = document.block("components"), []
-    for name in ("monopile", "jacket", "floating_platform", "mooring"):
-        if components.has(name):
-            notes.append(f"{name}: not read; the tower stands rigidly at its base")
+    if foundation := ", ".join(name for name in _FOUNDATIONS if name in components.data):
+        notes.append(f"{foundation}: not read; the tower stands rigidly at its base")
     for name, block in (("hub", "hub"), ("nacelle", "drivetrain")):
         if not components.block(block).has("elastic_properties"):
             notes.append(f"{name}: no elastic properties in the file, so it has no mass")

@@ -11,15 +11,13 @@ from typing import TYPE_CHECKING, Any
 
 from galerna.errors import InputError, did_you_mean
 from galerna.turbine.windio import yamlfile
-from galerna.turbine.windio.block import describe
+from galerna.turbine.windio.block import describe, meant
 from galerna.turbine.windio.yamlfile import Document, Keys, dotted_path
 
 if TYPE_CHECKING:
     from jsonschema import ValidationError
 
 _TYPO = 0.75  # how alike an unknown key and a valid one must be for the user to have meant it
-
-_KNOWN_STRANGERS = {"inertia_tt"}  # what WISDEM writes beside ``inertia``
 
 #: Blocks that describe how a machine is built; galerna reads their elastic properties instead.
 _NOT_READ: tuple[Keys, ...] = (
@@ -43,7 +41,7 @@ def validate_document(document: Document) -> list[str]:
     strangers: dict[Keys, list[str]] = {}
     for keys, valid, welcome in _unknown_keys(document.data, schema, schema, ()):
         name = str(keys[-1])
-        if name not in _KNOWN_STRANGERS and get_close_matches(name, valid, n=1, cutoff=_TYPO):
+        if _is_misspelt(name, valid):
             raise document.error(keys, f"unknown key {name!r}", did_you_mean(name, valid))
         if not welcome:
             strangers.setdefault(keys[:-1], []).append(name)
@@ -55,6 +53,13 @@ def validate_document(document: Document) -> list[str]:
         f"{dotted_path(keys) or 'file'}: ignored, as windIO v2 has no such keys: {', '.join(names)}"
         for keys, names in strangers.items()
     ]
+
+
+def _is_misspelt(name: str, valid: list[str]) -> bool:
+    """Whether a valid key was meant; WISDEM adds ``inertia_tt`` to ``inertia`` on purpose."""
+    if any(name.startswith(f"{key}_") for key in valid):
+        return False
+    return bool(get_close_matches(name, valid, n=1, cutoff=_TYPO))
 
 
 def _schema_errors(data: Any) -> list[ValidationError]:
@@ -113,9 +118,7 @@ def _explained(document: Document, error: ValidationError, more: str) -> InputEr
     match error.validator:
         case "required":
             name = next(k for k in error.validator_value if k not in error.instance)
-            unknown = [str(k) for k in error.instance]
-            hint = did_you_mean(name, unknown) if get_close_matches(name, unknown) else ""
-            return document.error(keys, f"{name!r} is missing{more}", hint)
+            return document.error(keys, f"{name!r} is missing{more}", meant(name, error.instance))
         case "type":
             what = f"expected {error.validator_value}, found {describe(error.instance)}"
         case "minimum" | "maximum":
