@@ -39,6 +39,8 @@ from galerna.inflow.synthesis import (
     unit_variance,
 )
 
+WHERE = "Kaimal box"
+
 _NOTHING = 14.0  #: decay times distance beyond which a coherence (1e-6) counts as none
 _LEAST_EXACT = 4.0  #: decay times distance over which the coherence is kept, however small the grid
 
@@ -65,23 +67,22 @@ def kaimal_box(
     those of v and w are 0.8 and 0.5 of it. Amplitudes are Gaussian; the seed alone decides
     the numbers. Raises InputError if an argument makes no sense. IEC 61400-1 ed. 3, annex B.
     """
-    where = "Kaimal box"
-    require_grid(where, shape, spacing)
-    require_positive(where, mean_speed=mean_speed, hub_height=hub_height)
+    require_grid(WHERE, shape, spacing)
+    require_positive(WHERE, mean_speed=mean_speed, hub_height=hub_height)
     require_one(
-        where,
+        WHERE,
         turbulence_class=turbulence_class,
         turbulence_intensity=turbulence_intensity,
         standard_deviation=standard_deviation,
     )
-    require_name(where, "coherent", coherent, ("u", "uvw"))
-    require_name(where, "normalise", normalise, NORMALISATIONS)
+    require_name(WHERE, "coherent", coherent, ("u", "uvw"))
+    require_name(WHERE, "normalise", normalise, NORMALISATIONS)
     if turbulence_class is not None:
-        require_name(where, "turbulence class", turbulence_class, tuple(REFERENCE_INTENSITY))
+        require_name(WHERE, "turbulence class", turbulence_class, tuple(REFERENCE_INTENSITY))
         sigma = normal_turbulence(mean_speed, turbulence_class)
     else:
         sigma = standard_deviation or (turbulence_intensity or 0.0) * mean_speed
-    require_positive(where, amount_of_turbulence=sigma)
+    require_positive(WHERE, amount_of_turbulence=sigma)
 
     frequency = np.arange(1, shape[0] // 2) * mean_speed / (shape[0] * spacing[0])
     spectra = kaimal_spectra(frequency, mean_speed, hub_height, 1.0)
@@ -93,7 +94,7 @@ def kaimal_box(
         expected = float(spectra[:, c].sum() * frequency[0])
         variance = unit_variance(normalise, ratio**2, expected, data[c])
         data[c] *= ratio * sigma / math.sqrt(variance)
-    return Box(data, spacing, mean_speed, hub_height, source=where)
+    return Box(data, spacing, mean_speed, hub_height, source=WHERE)
 
 
 def _half_spectrum(

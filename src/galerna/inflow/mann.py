@@ -36,6 +36,8 @@ from galerna.inflow.synthesis import (
     unit_variance,
 )
 
+WHERE = "Mann box"
+
 _NODES_PER_DECADE = 24  #: of k1, at which the covariance is integrated; between, interpolated
 _MODES_AT_ONCE = 1 << 18  #: lateral modes in work at a time, for the cache and the memory
 
@@ -76,29 +78,12 @@ def mann_box(
     costs time, not memory, and serves the coherence of far points at low k1.
     The seed alone decides the numbers. Raises InputError if an argument makes no sense.
     """
-    where = "Mann box"
-    require_grid(where, shape, spacing)
-    require_positive(where, length_scale=length_scale, mean_speed=mean_speed)
-    if not (math.isfinite(shear_parameter) and shear_parameter >= 0.0):
-        raise InputError(where, f"shear parameter is {shear_parameter:g}, expected 0 or more")
-    amounts = {
-        "alpha_epsilon": alpha_epsilon,
-        "standard_deviation": standard_deviation,
-        "turbulence_intensity": turbulence_intensity,
-    }
-    require_one(where, **amounts)
-    require_positive(where, **{name: x for name, x in amounts.items() if x is not None})
-    require_name(where, "normalise", normalise, NORMALISATIONS)
-    if not 1.0 <= lateral_period < math.inf:
-        raise InputError(where, f"lateral period is {lateral_period:g}, expected 1 or more")
-
+    require_grid(WHERE, shape, spacing)
+    require_positive(WHERE, length_scale=length_scale, mean_speed=mean_speed)
+    _check_amount(alpha_epsilon, standard_deviation, turbulence_intensity)
+    _check_options(shear_parameter, normalise, lateral_period)
     modes = _lateral_modes(
-        shape,
-        spacing,
-        length_scale,
-        shear_parameter,
-        high_frequency_compensation,
-        lateral_period,
+        shape, spacing, length_scale, shear_parameter, high_frequency_compensation, lateral_period
     )
     spectrum, expected = _half_spectrum(shape, modes, random_generator(seed))
     data = to_space(spectrum, shape[0])
@@ -109,7 +94,27 @@ def mann_box(
         theory = float(mann_variances(1.0, shear_parameter)[0])
         variance = unit_variance(normalise, theory, expected, data[0])
         data *= np.float32(deviation / math.sqrt(variance))
-    return Box(data, spacing, mean_speed, hub_height, source=where)
+    return Box(data, spacing, mean_speed, hub_height, source=WHERE)
+
+
+def _check_amount(
+    alpha_epsilon: float | None, standard_deviation: float | None, intensity: float | None
+) -> None:
+    amounts = {
+        "alpha_epsilon": alpha_epsilon,
+        "standard_deviation": standard_deviation,
+        "turbulence_intensity": intensity,
+    }
+    require_one(WHERE, **amounts)
+    require_positive(WHERE, **{name: x for name, x in amounts.items() if x is not None})
+
+
+def _check_options(shear_parameter: float, normalise: str, lateral_period: float) -> None:
+    require_name(WHERE, "normalise", normalise, NORMALISATIONS)
+    if not (math.isfinite(shear_parameter) and shear_parameter >= 0.0):
+        raise InputError(WHERE, f"shear parameter is {shear_parameter:g}, expected 0 or more")
+    if not 1.0 <= lateral_period < math.inf:
+        raise InputError(WHERE, f"lateral period is {lateral_period:g}, expected 1 or more")
 
 
 def _lateral_modes(
@@ -181,7 +186,7 @@ def _intervals(
 def _fill(
     noise: Factor, low: Factor, high: Factor, share: Array, amplitude: Array, out: Spectrum
 ) -> float:
-    """Correlate noise (n,3,2,ny,nz) into modes (n,3,ny,nz); returns their share of var(u)."""
+    """Correlate noise (n,3,2,ny,nz) into modes (n,3,ny,nz); returns what var(u) expects of them."""
     variance = 0.0
     for n in range(out.shape[0]):
         b = np.float32(amplitude[n] * share[n])
