@@ -61,7 +61,7 @@ class ProgressBar(Pace):
             TextColumn("{task.description}"),
             transient=True,
         )
-        self._task = self._progress.add_task("compiling", total=end, completed=simulation.time)
+        self._task = self._progress.add_task("compiling", total=end)
         self._progress.start()
 
     def show(self, simulation: Simulation, factor: float, remaining: float) -> None:

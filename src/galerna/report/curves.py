@@ -50,30 +50,36 @@ def performance_surface_figure(surface: xarray.Dataset, name: str = "") -> Figur
     """
     with galerna_style():
         figure, axes = new_figure(1, 2, (10.0, 4.4), sharey=True)
-        driven = surface.where(surface["power_coefficient"] > 0.0)
+        power = surface["power_coefficient"]
         for ax, variable in zip(axes[0], SURFACES, strict=True):
-            _contours(ax, driven[variable])
+            _contours(ax, surface[variable], power)
             ax.set_xlabel("Blade pitch angle [deg]")
         axes[0, 0].set_ylabel("Tip-speed ratio")
-        _mark_best(axes[0, 0], surface["power_coefficient"])
+        _mark_best(axes[0, 0], power)
         figure.suptitle(f"Rotor performance: {name}" if name else "Rotor performance")
     return figure
 
 
-def _contours(ax: Axes, variable: xarray.DataArray) -> None:
+def _contours(ax: Axes, variable: xarray.DataArray, power: xarray.DataArray) -> None:
+    """Filled contours, covered where the power coefficient is negative."""
+    from matplotlib.ticker import MaxNLocator
+
     pitch, _ = shown(variable["pitch"])
-    values = variable.transpose("tip_speed_ratio", "pitch").values
-    levels = np.linspace(0.0, float(np.nanmax(values)), 13)
-    filled = ax.contourf(pitch, variable["tip_speed_ratio"], values, levels, cmap="viridis")
+    over = pitch, variable["tip_speed_ratio"].values
+    values, driven = (v.transpose("tip_speed_ratio", "pitch").values for v in (variable, power))
+    levels = MaxNLocator(14).tick_values(0.0, float(values[driven > 0.0].max()))
+    filled = ax.contourf(*over, values, levels, cmap="viridis")
+    if driven.min() < 0.0:
+        ax.contourf(*over, driven, [driven.min(), 0.0], colors="white")
     ax.figure.colorbar(filled, ax=ax, format="%.2f")
     ax.set_title(label(variable, ""))
     ax.grid(False)
 
 
 def _mark_best(ax: Axes, power: xarray.DataArray) -> None:
-    """A dot and the figures of the largest power coefficient."""
+    """A dot at the largest power coefficient, and its figures in the title."""
     best = power.isel(power.argmax(...))  # type: ignore[arg-type]
     pitch, ratio = np.degrees(float(best["pitch"])), float(best["tip_speed_ratio"])
     ax.plot(pitch, ratio, "o", color="white", mec="black", ms=6)
-    text = f"{float(best):.3f} at {ratio:.2f}, {pitch:.1f} deg"
-    ax.annotate(text, (pitch, ratio), xytext=(8, 6), textcoords="offset points", color="white")
+    title = ax.get_title(loc="left")
+    ax.set_title(f"{title}, largest {float(best):.3f} at {ratio:.2f}, {pitch:.1f} deg")
