@@ -7,7 +7,7 @@ from importlib import import_module
 
 from .framework import Benchmark
 
-MODULES = ()
+MODULES = ("turbulence",)
 
 
 def benchmarks() -> Sequence[Benchmark]:

@@ -7,7 +7,7 @@ from importlib import import_module
 
 from .framework import Case
 
-MODULES = ()
+MODULES = ("corrections", "turbulence")
 
 
 def cases() -> Sequence[Case]:
