@@ -114,6 +114,11 @@ def test_a_dictionary_is_a_case_too():
     assert loaded.lasting(3.0).case.duration_s == 3.0
 
 
+def test_a_case_made_in_python_is_read_back_as_it_is():
+    case = parse(GOOD).case
+    assert load(case).case == case
+
+
 def test_a_case_that_is_not_there_is_answered_with_the_nearest_example():
     with pytest.raises(InputError, match="is neither a case file nor a built-in example"):
         load("no_such_case")

@@ -76,6 +76,11 @@ def test_yaw_swings_the_hub_about_the_tower():
     assert abs(hub[0]) < 1e-12
 
 
+def test_at_yaw_error_of_30_deg_the_blade_at_azimuth_90_deg_is_downwind():
+    positions = at(machine(yaw=Signal.constant(np.pi / 6), azimuth=np.pi / 2), 0.0)["position"]
+    assert positions[2, 0] - positions[0, 0] == pytest.approx(5.0, abs=1.0)
+
+
 def test_rates_are_the_derivatives_of_the_motion():
     moving = machine(
         rotor_speed=WIGGLY,

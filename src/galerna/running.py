@@ -10,7 +10,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from galerna import __version__
-from galerna.case import LoadedCase, load
+from galerna.case import Case, LoadedCase, load
 from galerna.cite import references
 from galerna.contract import Channel
 from galerna.errors import GalernaError, InputError, did_you_mean
@@ -24,14 +24,14 @@ if TYPE_CHECKING:
 
 
 def run(
-    case: str | Path | Mapping[str, Any] | LoadedCase,
+    case: str | Path | Mapping[str, Any] | Case | LoadedCase,
     output: str | Path | None = None,
     *,
     duration: float | None = None,
     overwrite: bool = False,
     callbacks: Sequence[Callback] = (),
 ) -> xarray.Dataset:
-    """Simulate a case (file, built-in name or dictionary) and return its result.
+    """Simulate a case (file, built-in name, dictionary or ``Case``) and return its result.
 
     With ``output`` the result is a NetCDF file too, whose records are on disk from the
     first on; a run that fails or is interrupted leaves what it had, and its ``status``

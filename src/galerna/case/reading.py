@@ -49,11 +49,13 @@ class LoadedCase:
             raise CaseError(self.document, [Problem(path, what, error.hint)]) from error
 
 
-def load(case: str | Path | Mapping[str, Any]) -> LoadedCase:
+def load(case: str | Path | Mapping[str, Any] | Case) -> LoadedCase:
     """A case from a YAML file, the name of a built-in example, or a dictionary of the same keys.
 
-    Raises InputError with everything that is wrong.
+    A ``Case`` made in Python will do as well. Raises InputError with everything that is wrong.
     """
+    if isinstance(case, Case):
+        case = case.model_dump(mode="json", by_alias=True, exclude_unset=True)
     if isinstance(case, Mapping):
         values = json.loads(json.dumps(case, default=_plain))
         text = json.dumps(values, indent=2)
