@@ -104,6 +104,22 @@ def test_missing_stiffness_makes_the_blade_rigid_and_says_so(tmp_path: Path) -> 
     assert any("rigid" in note for note in turbine.notes)
 
 
+def test_a_beam_without_rotary_inertia_is_taken(tmp_path: Path) -> None:
+    data = document()
+    inertia = data["components"]["tower"]["structure"]["elastic_properties"]["inertia_matrix"]
+    inertia |= {"i_edge": [0.0, 0.0], "i_flap": [0.0, 0.0], "cm_y": [0.0, 0.0]}
+    structure = read(tmp_path, data).tower.structure
+    assert np.diagonal(structure.inertia[0]) == pytest.approx([100.0] * 3 + [0.0] * 3)
+
+
+def test_an_offset_mass_needs_the_inertia_of_its_offset(tmp_path: Path) -> None:
+    data = document()
+    inertia = data["components"]["tower"]["structure"]["elastic_properties"]["inertia_matrix"]
+    inertia["i_edge"] = [3.9, 3.9]  # 100 kg/m at 0.2 m have 4 kg m
+    with pytest.raises(InputError, match="inertia_matrix: the 6x6 matrix"):
+        read(tmp_path, data)
+
+
 # towers of layers ----------------------------------------------------------------
 
 

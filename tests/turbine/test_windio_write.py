@@ -74,6 +74,22 @@ def test_sections_at_a_twist_of_their_own_are_turned_to_the_aerodynamic_one(
     assert curvature(found) != pytest.approx(curvature(structure), rel=1e-3)
 
 
+def test_blended_polars_and_several_reynolds_numbers_survive(tmp_path: Path) -> None:
+    data = small_windio.document()
+    clean = [small_windio.polar(slope=0.12, reynolds=r) for r in (3e6, 9e6)]
+    rough = [small_windio.polar(slope=0.08, reynolds=r) for r in (3e6, 9e6)]
+    data["airfoils"][1]["polars"] = [
+        {"configuration": "clean", "re_sets": clean},
+        {"configuration": "rough", "re_sets": rough},
+    ]
+    entry = data["components"]["blade"]["outer_shape"]["airfoils"][1]
+    entry |= {"configuration": ["clean", "rough"], "weight": [0.5, 0.5]}
+    turbine = windio.read(small_windio.write(tmp_path, data))
+    assert len(turbine.airfoils["thin [0.5 clean + 0.5 rough]"].polars) == 2
+    windio.write(turbine, tmp_path / "out.yaml")
+    assert_same(windio.read(tmp_path / "out.yaml"), turbine)
+
+
 def test_point_masses_survive(tmp_path: Path) -> None:
     turbine = windio.read(small_windio.write(tmp_path, small_windio.document()))
     tower = replace(turbine.tower, extra_masses=((12.0, 300.0),))

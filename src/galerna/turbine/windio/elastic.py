@@ -25,7 +25,7 @@ def is_complete(elastic: Block) -> bool:
     """Whether all six stiffnesses are given; 0, windIO's default, means that one is not."""
     stiffness, inertia = elastic.block("stiffness_matrix"), elastic.block("inertia_matrix")
     columns = [(stiffness, f"K{i}{i}") for i in range(1, 7)]
-    columns += [(inertia, name) for name in ("mass", "i_edge", "i_flap")]
+    columns.append((inertia, "mass"))
     return all(block.has(name) and block.array(name).any() for block, name in columns)
 
 
@@ -90,7 +90,8 @@ def _stiffness(block: Block, grid: Array) -> Array:
     for name, i, j in _COLUMNS:
         if i == j or block.has(name):
             matrix[:, i, j] = matrix[:, j, i] = block.array(name, len(grid))
-    _check_positive_definite(block, matrix, grid, "K")
+    _check_diagonal(block, matrix, grid, "K", directions=6)
+    _check_definite(block, matrix, grid, least_allowed=1e-12)
     return matrix
 
 
@@ -104,21 +105,28 @@ def _inertia(block: Block, grid: Array) -> Array:
     matrix = cross_section.inertia_matrix(columns["mass"], center, moments, columns["i_cp"])
     if block.has("i_plr"):
         matrix[:, 5, 5] = columns["i_plr"]
-    _check_positive_definite(block, matrix, grid, "M")
+    _check_diagonal(block, matrix, grid, "M", directions=3)
+    _check_definite(block, matrix, grid, least_allowed=-1e-9)  # a thin beam has no own inertia
     return matrix
 
 
-def _check_positive_definite(block: Block, matrix: Array, grid: Array, letter: str) -> None:
+def _check_diagonal(block: Block, matrix: Array, grid: Array, letter: str, directions: int) -> None:
+    """The first ``directions`` diagonal terms must be positive, the others not negative."""
     diagonal = np.diagonal(matrix, axis1=1, axis2=2)
-    if (diagonal <= 0.0).any():
-        station, i = np.argwhere(diagonal <= 0.0)[0]
-        raise block.error(
-            f"diagonal term {letter}{i + 1}{i + 1} is {diagonal[station, i]:g} at span "
-            f"{grid[station]:.4g}; it must be positive"
-        )
-    scale = 1.0 / np.sqrt(diagonal)
+    wrong = np.where(np.arange(6) < directions, diagonal <= 0.0, diagonal < 0.0)
+    if wrong.any():
+        station, i = np.argwhere(wrong)[0]
+        name = f"{letter}{i + 1}{i + 1}"
+        what = f"diagonal term {name} is {diagonal[station, i]:g} at span {grid[station]:.4g}"
+        raise block.error(what, "it must be positive")
+
+
+def _check_definite(block: Block, matrix: Array, grid: Array, least_allowed: float) -> None:
+    """No deformation may have negative energy: eigenvalues, each direction on its own scale."""
+    diagonal = np.diagonal(matrix, axis1=1, axis2=2)
+    scale = 1.0 / np.sqrt(np.where(diagonal > 0.0, diagonal, 1.0))
     least = np.linalg.eigvalsh(matrix * scale[:, :, None] * scale[:, None, :])[:, 0]
-    if (least < -1e-9).any():  # a thin section may have no inertia of its own
+    if (least < least_allowed).any():
         station = int(np.argmin(least))
         raise block.error(
             f"the 6x6 matrix at span {grid[station]:.4g} is not positive definite",
