@@ -36,8 +36,8 @@ def modes_of(count, shear_parameter=GAMMA, point_values=True):
 def held_variance(planes, length):
     """Variance of u that the modes 1..planes/2-1 of a box stand for, over their full width."""
     width = 2 * math.pi / length
-    k1 = np.linspace(0.5, planes / 2 - 0.5, 4000) * width
-    return 2 * np.trapezoid(mann_spectra(k1, LENGTH, GAMMA)[:, 0], k1)
+    k1 = np.geomspace(0.5, planes / 2 - 0.5, 200) * width
+    return 2 * np.trapezoid(k1 * mann_spectra(k1, LENGTH, GAMMA)[:, 0], np.log(k1))
 
 
 def powers(factors):
@@ -176,11 +176,28 @@ def test_isotropic_alpha_epsilon_is_that_of_the_dissertation():
     assert alpha_epsilon_isotropic(0.16 * 10.5, 29.4) == pytest.approx(0.431, rel=2e-3)
 
 
+@pytest.mark.parametrize("length_scale", [0.5, 2000.0])
+@pytest.mark.parametrize("shear_parameter", [0.0, 8.0])
+@pytest.mark.parametrize("lateral_period", [1.0, 2.0])
+def test_extremes_give_the_energy_expected_of_them(length_scale, shear_parameter, lateral_period):
+    box = box_of(
+        (64, 2, 3),
+        alpha_epsilon=None,
+        standard_deviation=1.0,
+        normalise="box",
+        length_scale=length_scale,
+        shear_parameter=shear_parameter,
+        lateral_period=lateral_period,
+    )
+    assert 0.2 < box.data[0].std() < 3.0  # one short sample
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
         ({"shape": (255, 8, 8)}, "nx even"),
         ({"shape": (256, 1, 8)}, "at least 2"),
+        ({"shape": (1 << 20, 1 << 10, 1 << 10)}, "expected at most"),
         ({"length_scale": 0.0}, "length scale is 0"),
         ({"mean_speed": math.nan}, "mean speed is nan"),
         ({"shear_parameter": -1.0}, "shear parameter is -1"),

@@ -20,6 +20,8 @@ Spectrum = NDArray[np.complex64]
 Normalisation = Literal["theory", "box", "sample"]
 NORMALISATIONS = ("theory", "box", "sample")
 
+_MOST_POINTS = 1 << 30  #: a box of 12 GB, and as much again while it is made
+
 
 def random_generator(seed: int) -> np.random.Generator:
     """Generator for a seed of either sign; the same seed gives the same numbers."""
@@ -58,6 +60,13 @@ def require_grid(
             where,
             f"shape is {tuple(shape)}, expected (nx, ny, nz) with nx even and at least 4, "
             "ny and nz at least 2",
+        )
+    if math.prod(shape) > _MOST_POINTS:
+        raise InputError(
+            where,
+            f"{' x '.join(map(str, shape))} points are {math.prod(shape):,}, "
+            f"expected at most {_MOST_POINTS:,}",
+            "take fewer points, or a coarser spacing",
         )
     dx, dy, dz = spacing
     require_positive(where, dx=dx, dy=dy, dz=dz)
