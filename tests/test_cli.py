@@ -237,3 +237,14 @@ def test_progress_is_a_line_now_and_then_where_there_is_no_terminal(capsys):
     assert "of 1.0 s" in lines[0]
     assert "x real time" in lines[0]
     assert "9.55 rpm" in lines[0]
+
+
+def test_every_option_that_is_cited_exists():
+    from galerna.aero.bem.options import BemOptions
+    from galerna.cite import AERODYNAMICS, TURBINES
+    from galerna.turbine import names
+
+    assert set(TURBINES) == set(names())
+    for option, values in AERODYNAMICS.items():
+        for value in values:
+            BemOptions.model_validate({"model": "bem", option: value})

@@ -131,6 +131,13 @@ _DU_SELIG = Reference(
     "10.2514/6.1998-21",
     "techreport",
 )
+_POWLES = Reference(
+    "Powles1983",
+    "S. R. J. Powles",
+    1983,
+    "The effects of tower shadow on the dynamics of a horizontal-axis wind turbine",
+    "Wind Engineering 7(1), 26-42",
+)
 _MANN_TENSOR = Reference(
     "Mann1994",
     "J. Mann",
@@ -218,6 +225,7 @@ AERODYNAMICS: dict[str, dict[object, tuple[Reference, ...]]] = {
     "skewed_wake": {"pitt_peters": (_PITT_PETERS,), "vortex_cylinder": (_SKEWED_CYLINDER,)},
     "dynamic_inflow": {"oye": (_OYE,)},
     "unsteady_airfoil": {"beddoes_leishman": (_BEDDOES_LEISHMAN,)},
+    "tower_influence": {True: (_POWLES,)},
     "rotational_augmentation": {"snel": (_SNEL,), "du_selig": (_DU_SELIG,)},
 }
 
