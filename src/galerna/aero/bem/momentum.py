@@ -2,18 +2,18 @@
 
 After Ning (2014), "A simple solution method for the blade element momentum equations with
 guaranteed convergence", Wind Energy 17, 1327-1345, the inflow angle phi is the unknown. The
-thrust balance gives the relative speed W(phi); the residual is the balance of the in-plane
+thrust balance gives the relative speed W(phi), the force on the mass flow is parallel to the
+velocity that it induces, u_t / u_n = Ct / Cn, and the residual is the balance of the in-plane
 velocities,
 
-    W cos(phi) - u_t - U_t = 0,   u_n / u_t = Cn / Ct   (the force on the mass flow is parallel
-                                                         to the velocity it induces)
+    W cos(phi) - u_t - U_t = 0
 
 with U_n, U_t the velocities without the rotor, u_n = a U_n the induced velocity against the
 wind and u_t the swirl. The thrust curve is continued through a = 1, where the flow reverses,
 so W(phi) is one smooth positive branch, infinite at both ends of its interval: the residual
 goes from plus to minus infinity between -pi/2 and 3 pi/2 for every U_t, zero and negative
-included, and a bracket of the root is known without a search. Wind from behind is the same
-problem mirrored.
+included, and a bracket of the root is known without a search. Divided by W it stays finite.
+Wind from behind is the same problem mirrored.
 """
 
 from __future__ import annotations
@@ -25,14 +25,20 @@ from numba import njit
 
 from galerna.aero.bem.options import BemOptions
 from galerna.aero.sections import section_coefficients
+from galerna.contract import Array
 
 FASTMATH = {"reassoc", "contract", "arcp", "nsz", "afn"}
 HIGH_THRUST = {"buhl": 0, "glauert": 1, "wilson_walker": 2}
 LOWEST_LOSS = 1e-3  #: keeps the balance finite at the very tip and root
+STANDSTILL = 1e-12  #: of U_n / W; what is below counts as no answer
 SLOWEST = 1e-6  #: m/s; a normal velocity below this counts as this one
-TOLERANCE = 1e-9  #: rad, of the inflow angle
+TOLERANCE = 1e-10  #: of the residual, which is of order 1
+NARROWEST = 1e-14  #: rad, of a bracket
+PATIENCE = 8  #: evaluations of false position alone
 FIRST_STEP = 0.01  #: rad, width of the first bracket around the guess
-MOST_ITERATIONS = 100
+
+
+Strip = tuple[float, float, float, float, float, float]
 
 
 class Momentum(NamedTuple):
@@ -61,43 +67,53 @@ class Momentum(NamedTuple):
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
-def prandtl_loss(exponent, sine):  # type: ignore[no-untyped-def]
-    """Prandtl's factor F = 2/pi arccos(exp(-exponent / |sin(phi)|)), not below LOWEST_LOSS.
+def prandtl_loss(exponent: float, sine: float) -> float:
+    """Prandtl's factor F = 2/pi arccos(exp(-exponent / |sin(phi)|)).
 
     ``exponent`` is B/2 (R - r)/r at the tip and B/2 (r - R_root)/R_root at the root.
     """
-    return max(2.0 / pi * acos(exp(-exponent / max(abs(sine), 1e-9))), LOWEST_LOSS)
+    return 2.0 / pi * acos(exp(-exponent / max(abs(sine), 1e-9)))
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
-def speed_ratio(balance, loss, sine, high_thrust):  # type: ignore[no-untyped-def]
-    """W / U_n from the thrust balance at an inflow angle; infinity where none exists.
+def slowness(load: float, loss: float, sine: float, high_thrust: int) -> float:
+    """U_n / W from the thrust balance at an inflow angle; not positive where there is none.
 
-    ``balance`` is sigma Cn / (4 F), so kappa = balance / sin^2(phi). Up to a = 0.4 (0.2 for
+    ``load`` is sigma Cn / (4 F), so that kappa = load / sin^2(phi). Up to a = 0.4 (0.2 for
     Wilson and Walker) it is momentum theory, W sin(phi) = U_n / (1 + kappa). Beyond, the
     empirical thrust: Buhl (2005), NREL/TP-500-36834; Glauert's parabola times F; or the
     tangent from a = 0.2 of Wilson and Walker (1984). Each is solved for 1 - a in closed form.
     """
     square = sine * sine
     critical = 0.2 if high_thrust == 2 else 0.4
-    if sine > 0.0 and balance * (1.0 - critical) <= critical * square:
-        below = square + balance
-        return sine / below if below > 0.0 else float("inf")
+    if sine > 0.0 and load * (1.0 - critical) <= critical * square:
+        return (square + load) / sine
+    if load <= 0.0:
+        return -1.0
     if high_thrust == 2:
         tangent, crossing = 1.0 - 2.0 * critical, (1.0 - critical) ** 2
-        root = (tangent * sine) ** 2 + 4.0 * balance * crossing
-        below = tangent * sine + sqrt(max(root, 0.0))
-        return 2.0 * crossing / below if balance > 0.0 and below > 0.0 else float("inf")
+        return (tangent * sine + sqrt(tangent**2 * square + 4.0 * load * crossing)) / (
+            2.0 * crossing
+        )
     loss = loss if high_thrust == 0 else 1.0
-    root = 2.0 * loss * balance - loss * (4.0 / 3.0 - loss) * square
-    below = sqrt(max(root, 0.0)) + (5.0 / 3.0 - loss) * sine
-    return 1.0 / below if root > 0.0 and below > 0.0 else float("inf")
+    root = 2.0 * loss * load - loss * (4.0 / 3.0 - loss) * square
+    return sqrt(root) + (5.0 / 3.0 - loss) * sine if root > 0.0 else -1.0
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
-def balance(phi, table, station, pitch, normal, tangential, strip, switches):  # type: ignore[no-untyped-def]
-    """Residual of the in-plane velocities (m/s), W, swirl u_t and loss factor at ``phi``.
+def balance(
+    phi: float,
+    table: Array,
+    station: int,
+    pitch: float,
+    normal: float,
+    tangential: float,
+    strip: Strip,
+    switches: Momentum,
+) -> tuple[float, float, float, float]:
+    """Residual at ``phi``, U_n / W, swirl over W and loss factor.
 
+    The residual is that of the module times U_n / W over U_n + |U_t|, so of order 1.
     ``normal`` > 0; ``pitch`` is the angle from the rotor plane to the chord. ``strip`` holds
     the solidities of the normal and the tangential balance, the exponents of tip and root
     loss, the sign that mirrors the section when the wind comes from behind, and a lift
@@ -112,52 +128,65 @@ def balance(phi, table, station, pitch, normal, tangential, strip, switches):  #
         loss = prandtl_loss(tip, sine)
     if switches.root_loss > 0.0:
         loss *= prandtl_loss(root, sine)
+    loss = max(loss, LOWEST_LOSS)
     force_normal = lift * cosine + switches.drag_axial * drag * sine
     force_tangential = lift * sine - switches.drag_swirl * drag * cosine
     load = sigma_normal * force_normal / (4.0 * loss)
-    ratio = speed_ratio(load, loss, sine, switches.high_thrust)
-    far = 1e3 * (normal + abs(tangential))
-    if not ratio * normal < far:
-        return (far if cosine > 0.0 else -far), far, 0.0, loss
-    speed = ratio * normal
+    slow = slowness(load, loss, sine, switches.high_thrust)
+    if slow <= STANDSTILL:
+        return (1.0 if cosine > 0.0 else -1.0), slow, 0.0, loss
     swirl = 0.0
     if switches.swirl > 0.0:
         if abs(load) > 1e-9 * abs(sine):
-            induced = normal - speed * sine
+            induced = slow - sine
             swirl = induced * sigma_tangential * force_tangential / (sigma_normal * force_normal)
         else:
-            swirl = speed * sigma_tangential * force_tangential / (4.0 * loss * sine)
-    return speed * cosine - swirl - tangential, speed, swirl, loss
+            swirl = sigma_tangential * force_tangential / (4.0 * loss * sine)
+    residual = normal * (cosine - swirl) - tangential * slow
+    return residual / (normal + abs(tangential)), slow, swirl, loss
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
-def solve_strip(guess, table, station, pitch, normal, tangential, strip, switches):  # type: ignore[no-untyped-def]
-    """Inflow angle, induced velocity against the wind, swirl (m/s), loss factor and evaluations.
+def solve_strip(
+    guess: float,
+    table: Array,
+    station: int,
+    pitch: float,
+    normal: float,
+    tangential: float,
+    strip: Strip,
+    switches: Momentum,
+) -> tuple[float, float, float, float, int]:
+    """Inflow angle, induced velocity against the wind, swirl (m/s), loss factor, evaluations.
 
     ``normal`` may have any sign (``strip`` carries the matching mirror). The root is bracketed
-    from ``guess`` outwards and refined with the false position of Anderson and Bjorck (1973).
+    from ``guess`` outwards, where a bracket is certain since the
+    ends have their own signs, and refined with the false position of
+    Anderson and Bjorck (1973); should that be slow, bisection takes every second turn.
     """
     mirror = strip[4]
     normal = max(abs(normal), SLOWEST)
     low, high = -0.5 * pi, 1.5 * pi
-    at = min(max(guess, low), high)
-    value, speed, swirl, loss = balance(
+    at = guess if low < guess < high else 0.0
+    value, slow, swirl, loss = balance(
         at, table, station, pitch, normal, tangential, strip, switches
     )
     step = FIRST_STEP if value > 0.0 else -FIRST_STEP
-    evaluations = 1
-    other, other_value = at, value
-    while value * other_value > 0.0:  # both ends of the whole interval have their sign
+    other, other_value, evaluations = at, value, 1
+    while value * other_value > 0.0 and low < at < high:
         other, other_value = at, value
         at = min(max(at + step, low), high)
-        value, speed, swirl, loss = balance(
+        value, slow, swirl, loss = balance(
             at, table, station, pitch, normal, tangential, strip, switches
         )
         step *= 4.0
         evaluations += 1
-    while abs(at - other) > TOLERANCE and value != 0.0 and evaluations < MOST_ITERATIONS:
+    end = evaluations + PATIENCE
+    while abs(value) > TOLERANCE and abs(at - other) > NARROWEST:
         trial = at - value * (at - other) / (value - other_value)
-        trial_value, speed, swirl, loss = balance(
+        if evaluations > end and evaluations % 2 == 0:
+            trial = 0.5 * (at + other)
+        trial_value, slow, swirl, loss = balance(
             trial, table, station, pitch, normal, tangential, strip, switches
         )
         if trial_value * value < 0.0:
@@ -165,9 +194,12 @@ def solve_strip(guess, table, station, pitch, normal, tangential, strip, switche
         else:
             shrink = 1.0 - trial_value / value
             other_value *= shrink if shrink > 0.0 else 0.5
-        converged = abs(trial - at) < TOLERANCE
         at, value = trial, trial_value
         evaluations += 1
-        if converged:
-            break
-    return at, mirror * (normal - speed * sin(at)), swirl, loss, evaluations
+    if slow <= STANDSTILL:  # the root lies within rounding of the end of W(phi)
+        at = other
+        value, slow, swirl, loss = balance(
+            at, table, station, pitch, normal, tangential, strip, switches
+        )
+    speed = normal / slow if slow > STANDSTILL else 0.0
+    return at, mirror * (normal - speed * sin(at)), swirl * speed, loss, evaluations

@@ -6,7 +6,7 @@ from math import atan2, pi, sqrt
 
 from numba import njit
 
-from galerna.aero.bem.momentum import FASTMATH
+from galerna.aero.bem.momentum import FASTMATH, Strip
 from galerna.aero.vectors import (
     Vector,
     add,
@@ -112,9 +112,7 @@ def place_strip(
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
-def strip_balance(
-    i: int, strips: Array, shape: Array, blades: float, lift_shift: float
-) -> tuple[float, float, float, float, float, float]:
+def strip_balance(i: int, strips: Array, shape: Array, blades: float, lift_shift: float) -> Strip:
     """What ``momentum.solve_strip`` wants of strip i.
 
     Momentum flows through the annulus that the strip sweeps, dr = ds RADIAL, along the
