@@ -93,16 +93,19 @@ def test_tangent_is_the_derivative_of_the_exponential(angle):
         assert np.allclose(moved / (2 * step), tangent(d)[:, k], atol=1e-9)
 
 
+@pytest.mark.parametrize("dual", [True, False])
 @pytest.mark.parametrize("angle", [0.0, 1e-6, 0.3, 0.999, 1.001, 2.5, 3.1])
-def test_slopes_of_the_inverse_tangents(angle):
-    d, wrench = twist(angle, 4), twist(1.0, 5)
-    slopes = inverse_tangent_slopes(d, wrench)
+def test_slopes_of_the_inverse_tangents(angle, dual):
+    d, y = twist(angle, 4), twist(1.0, 5)
+    slopes = inverse_tangent_slopes(d, y, dual)
     for side in (0, 1):
         step = 1e-6 * np.eye(6)
-        difference = [
-            (inverse_tangents(d + e)[side] - inverse_tangents(d - e)[side]).T @ wrench / 2e-6
-            for e in step
-        ]
+
+        def applied(e, side=side):
+            operator = inverse_tangents(d + e)[side]
+            return (operator.T if dual else operator) @ y
+
+        difference = [(applied(e) - applied(-e)) / 2e-6 for e in step]
         assert np.allclose(slopes[side], np.array(difference).T, atol=2e-9)
 
 

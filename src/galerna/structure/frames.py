@@ -264,29 +264,15 @@ def ad(d: Array) -> Array:
     return A
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
-def bracket_transposed(d: Array, wrench: Array) -> Array:
-    """``ad(d).T @ wrench`` (6,) with two forces and moments (6,) crossed directly."""
-    out = np.empty(6)
-    for i in range(3):
-        j, k = (i + 1) % 3, (i + 2) % 3
-        out[i] = wrench[j] * d[3 + k] - wrench[k] * d[3 + j]
-        out[3 + i] = (
-            wrench[j] * d[k]
-            - wrench[k] * d[j]
-            + wrench[3 + j] * d[3 + k]
-            - wrench[3 + k] * d[3 + j]
-        )
-    return out
-
-
 @njit(cache=True)
-def bracket_by_twist(wrench: Array) -> Array:
-    """The matrix (6,6) of ``ad(d).T @ wrench`` as a linear function of d."""
+def bracket_by_twist(y: Array, dual: bool) -> Array:
+    """The matrix (6,6) of ``ad(d) @ y``, ``dual``: of ``ad(d).T @ y``, over d."""
+    if not dual:
+        return -ad(y)
     B = np.zeros((6, 6))
-    B[:3, 3:] = hat(wrench[:3])
+    B[:3, 3:] = hat(y[:3])
     B[3:, :3] = B[:3, 3:]
-    B[3:, 3:] = hat(wrench[3:])
+    B[3:, 3:] = hat(y[3:])
     return B
 
 
@@ -337,18 +323,21 @@ def inverse_tangents(d: Array) -> tuple[Array, Array]:
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def inverse_tangent_slopes(d: Array, wrench: Array) -> tuple[Array, Array]:
-    """Derivatives (6,6) over d of ``T(d)^-T wrench`` and ``T(-d)^-T wrench``."""
+def inverse_tangent_slopes(d: Array, y: Array, dual: bool) -> tuple[Array, Array]:
+    """Derivatives (6,6) over d of ``T(d)^-1 y`` and ``T(-d)^-1 y`` for a twist y (6,).
+
+    ``dual``: of the transposed operators and a wrench y instead.
+    """
     a2, a2_slope, a4, a4_slope = _inverse_coefficients(d[3] ** 2 + d[4] ** 2 + d[5] ** 2)
-    y1 = bracket_transposed(d, wrench)
-    y2 = bracket_transposed(d, y1)
-    y3 = bracket_transposed(d, y2)
-    y4 = bracket_transposed(d, y3)
-    B = bracket_by_twist(wrench)
-    A = ad(d)
-    D2 = multiply_transposed(A, B) + bracket_by_twist(y1)
-    D3 = multiply_transposed(A, D2) + bracket_by_twist(y2)
-    D4 = multiply_transposed(A, D3) + bracket_by_twist(y3)
+    A = ad(d).T.copy() if dual else ad(d)
+    y1 = apply(A, y)
+    y2 = apply(A, y1)
+    y3 = apply(A, y2)
+    y4 = apply(A, y3)
+    B = bracket_by_twist(y, dual)
+    D2 = multiply(A, B) + bracket_by_twist(y1, dual)
+    D3 = multiply(A, D2) + bracket_by_twist(y2, dual)
+    D4 = multiply(A, D3) + bracket_by_twist(y3, dual)
     ahead = np.empty((6, 6))
     behind = np.empty((6, 6))
     for i in range(6):

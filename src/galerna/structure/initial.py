@@ -1,0 +1,97 @@
+"""Accelerations and joint forces that fit the positions and velocities of a start."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from galerna.contract import Array
+from galerna.errors import InputError
+
+from .frames import exp_se3
+from .system import Forces, State, System
+
+
+def with_initial_accelerations(system: System, state: State, forces: Forces | None = None) -> State:
+    """The state with accelerations and multipliers that fit its positions and velocities.
+
+    Raises InputError, with the joint named, where the velocities violate a constraint.
+    """
+    n = len(system)
+    rest = replace(state.copy(), acceleration=np.zeros((n, 6)))
+    rest.multiplier[:], rest.constraint_multiplier[:] = 0.0, 0.0
+    identity = np.tile(np.eye(6), (n, 1, 1))
+    rates, accelerations = _along_the_flow(system, rest, 1e-3)
+    _check_velocities(system, rest, rates)
+    balance = system.balance(rest, forces or Forces.none(n), system.still(), identity)
+    balance.nodes = system.mass.copy()
+    balance.pairs.tangent[:] = 0.0
+    balance.pairs.motion[:] = accelerations[: len(system.pairs)]
+    if balance.rows is not None:
+        kept = balance.rows
+        balance.rows = replace(
+            kept, residual=accelerations[len(system.pairs) :, 0], jacobian=kept.direction,
+            tangent=0.0 * kept.tangent,
+        )  # fmt: skip
+    rate, rest.multiplier, rest.constraint_multiplier = system.solve(balance, system.mass_scale)
+    rest.acceleration, rest.auxiliary = rate, rate.copy()
+    return rest
+
+
+def _along_the_flow(system: System, state: State, step: float) -> tuple[Array, Array]:
+    """First and second rate of all constrained motions while the body twists stay constant."""
+    values = []
+    for sign in (-1.0, 0.0, 1.0):
+        moved = state.copy()
+        moved.time = state.time + sign * step
+        for i in range(1, len(system)):
+            turn, shift = exp_se3(sign * step * state.velocity[i])
+            moved.position[i] = state.position[i] + state.rotation[i] @ shift
+            moved.rotation[i] = state.rotation[i] @ turn
+        values.append(_constrained_motions(system, moved))
+    before, now, after = values
+    first = (after - before) / (2.0 * step)
+    second = (after - 2.0 * now + before) / step**2
+    velocity_level = _velocity_rows(system)
+    second[velocity_level] = first[velocity_level]
+    first[velocity_level] = now[velocity_level]
+    return first, second
+
+
+def _velocity_rows(system: System) -> NDArray[np.bool_]:
+    """Rows of ``_constrained_motions`` that are constraints on velocities."""
+    kinds = [not constraint.holonomic for constraint, _ in system.constraints]
+    others = np.repeat(np.array(kinds, dtype=bool), system.constraint_sizes)
+    return np.concatenate([np.zeros(len(system.pairs), dtype=bool), others])
+
+
+def _constrained_motions(system: System, state: State) -> Array:
+    """Pair motions (m,6) and below them the constraints' values in the first column."""
+    motion = system.pair_motion(state)
+    values = [
+        c.violation(state.time, state.position[k], state.rotation[k], state.velocity[k])
+        for c, k in system.constraints
+    ]
+    column = np.concatenate([*values, np.zeros(0)])
+    return np.vstack([motion, np.pad(column[:, None], ((0, 0), (0, 5)))])
+
+
+def _check_velocities(system: System, state: State, rates: Array) -> None:
+    m = len(system.pairs)
+    held = np.where(system.pairs.locked, np.abs(rates[:m]), 0.0)
+    limit = 1e-5 * (1.0 + np.abs(state.velocity).max())
+    if held.max(initial=0.0) > limit:
+        worst = int(held.max(axis=1).argmax())
+        raise InputError(
+            system.pair_names[worst],
+            f"the initial velocities violate this joint by {held.max():.3g} (m/s, rad/s)",
+            "give velocities that the joint permits",
+        )
+    others = np.abs(rates[m:, 0])
+    if others.max(initial=0.0) > limit:
+        last_rows = np.cumsum(system.constraint_sizes)
+        worst = int(np.searchsorted(last_rows, others.argmax(), "right"))
+        name = system.constraints[worst][0].name
+        raise InputError(name, f"the initial velocities violate it by {others.max():.3g}")

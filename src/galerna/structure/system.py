@@ -1,0 +1,317 @@
+"""The machine as equations: one residual for statics, rotation, dynamics and linearisation.
+
+Every analysis asks ``System.balance`` for the same sum of inertia, weight, loads, internal
+and constraint wrenches at the nodes. They differ in how the body twists and their rates
+depend on the nodes' variations, and say so with two matrices a node: nothing in statics,
+``ad(v)`` in steady rotation, the scheme's factors in time integration.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+import numpy as np
+from numba import njit
+
+from galerna.contract import Array, Motion
+from galerna.errors import InputError, did_you_mean
+
+from .constraints import Constraint, constraint_rows
+from .frames import adjoint
+from .inertia import node_balance
+from .pairs import Integers, PairAnswer, Pairs, answer, empty_answer
+from .solvers import LinearSolver, Rows, choose_solver
+
+
+@dataclass(eq=False, slots=True)
+class State:
+    """Where the machine is, and everything the next step depends on.
+
+    position (n,3) m, rotation (n,3,3), velocity and acceleration (n,6): body twists m/s,
+    rad/s and their true rates; ``auxiliary`` (n,6) is the integrator's own acceleration;
+    ``multiplier`` (m,6) N, N m per pair and ``constraint_multiplier`` (k,). Frame 0 is the
+    ground.
+    """
+
+    time: float
+    position: Array
+    rotation: Array
+    velocity: Array
+    acceleration: Array
+    auxiliary: Array
+    multiplier: Array
+    constraint_multiplier: Array
+
+    def copy(self) -> State:
+        return State(self.time, *(getattr(self, name).copy() for name in ARRAYS))
+
+    def motion(self, nodes: Integers) -> Motion:
+        """Motion of the frames ``nodes`` in global axes, as load models see it."""
+        R, v, a = self.rotation[nodes], self.velocity[nodes], self.acceleration[nodes]
+        turn = np.cross(v[:, 3:], v[:, :3])
+        vectors = np.stack([v[:, :3], v[:, 3:], a[:, :3] + turn, a[:, 3:]], axis=-1)
+        out = R @ vectors
+        return Motion(self.position[nodes], R, *(out[:, :, k] for k in range(4)))
+
+
+ARRAYS = tuple(name for name in State.__dataclass_fields__ if name != "time")
+
+
+@dataclass(eq=False, slots=True)
+class Forces:
+    """Loads on all n frames: ``dead`` (n,6) in global and ``follower`` (n,6) in body axes.
+
+    ``stiffness``, ``damping`` and ``mass`` (n,6,6), where given, are minus the
+    derivatives of the dead loads over motion, velocity and acceleration in global axes.
+    """
+
+    dead: Array
+    follower: Array
+    stiffness: Array | None = None
+    damping: Array | None = None
+    mass: Array | None = None
+
+    @classmethod
+    def none(cls, n: int) -> Forces:
+        return cls(np.zeros((n, 6)), np.zeros((n, 6)))
+
+    def scaled(self, factor: float) -> Forces:
+        """The loads times a factor."""
+        blocks = (
+            None if b is None else factor * b for b in (self.stiffness, self.damping, self.mass)
+        )
+        return Forces(factor * self.dead, factor * self.follower, *blocks)
+
+
+LoadFunction = Callable[[State], Forces]
+Placement = Callable[[float], tuple[Array, Array]]  #: time -> position (3,), rotation (3,3)
+
+
+@dataclass(eq=False, slots=True)
+class Balance:
+    """Residual wrench (n,6) of the nodes and what its derivative is made of."""
+
+    residual: Array
+    nodes: Array
+    pairs: PairAnswer
+    rows: Rows | None
+
+
+@njit(cache=True)
+def _add_pairs(ends: Integers, node_wrench: Array, residual: Array) -> None:
+    for e in range(len(ends)):
+        for k in range(6):
+            residual[ends[e, 0], k] += node_wrench[e, k]
+            residual[ends[e, 1], k] += node_wrench[e, 6 + k]
+
+
+@dataclass(eq=False)
+class System:
+    """Frames, pairs and constraints ready for analysis; built by ``Structure``.
+
+    ``mass`` (n,6,6) and ``weight`` (n,4: kg, kg m) of the frames, ``gravity`` (3,) m/s2,
+    ``drives`` the pairs whose frame A moves in its node's axes as a function of time.
+    """
+
+    names: list[str]
+    pair_names: list[str]
+    pairs: Pairs
+    mass: Array
+    weight: Array
+    gravity: Array
+    position: Array
+    rotation: Array
+    drives: list[tuple[int, Placement]] = field(default_factory=list)
+    constraints: list[tuple[Constraint, Integers]] = field(default_factory=list)
+
+    @cached_property
+    def solver(self) -> LinearSolver:
+        return choose_solver(self.pairs, len(self), bool(self.constraints), self.names)
+
+    @cached_property
+    def _room(self) -> PairAnswer:
+        return empty_answer(len(self.pairs))
+
+    @cached_property
+    def constraint_sizes(self) -> list[int]:
+        """Number of rows of each constraint beside the pairs."""
+        x, R = self.position, self.rotation
+        return [len(c.directions(0.0, x[k], R[k])) for c, k in self.constraints]
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def initial_state(self) -> State:
+        """The machine as it was described, at rest at time 0."""
+        n, m = len(self), len(self.pairs)
+        rest = np.zeros((n, 6))
+        multiplier, others = np.zeros((m, 6)), np.zeros(sum(self.constraint_sizes))
+        x, R = self.position.copy(), self.rotation.copy()
+        return State(0.0, x, R, rest, rest.copy(), rest.copy(), multiplier, others)
+
+    def set_time(self, time: float) -> None:
+        """Move the driven frames to where they are at ``time``."""
+        for pair, placement in self.drives:
+            x, R = placement(time)
+            self.pairs.offset_position[pair, 0] = x
+            self.pairs.offset_rotation[pair, 0] = R
+
+    def balance(
+        self,
+        state: State,
+        forces: Forces,
+        velocity_tangent: Array,
+        acceleration_tangent: Array,
+        gravity_factor: float = 1.0,
+        carried: Array | None = None,
+    ) -> Balance:
+        """The residual wrenches at a state, with tangents over the nodes' variations.
+
+        ``velocity_tangent`` and ``acceleration_tangent`` (n,6,6) say how the analysis ties
+        the twists and their rates to the variations; ``carried`` (m,6) see ``pairs.answer``.
+        The pairs' part stays valid until the next call.
+        """
+        n = len(self)
+        residual, nodes = np.empty((n, 6)), np.empty((n, 6, 6))
+        self.set_time(state.time)
+        node_balance(
+            self.mass, self.weight, gravity_factor * self.gravity, forces.dead, forces.follower,
+            state.rotation, state.velocity, state.acceleration,
+            velocity_tangent, acceleration_tangent, residual, nodes,
+        )  # fmt: skip
+        _add_load_tangents(
+            forces, state.rotation, state.velocity, velocity_tangent, acceleration_tangent, nodes
+        )
+        pairs = answer(
+            self.pairs, state.multiplier, state.position, state.rotation, state.velocity,
+            velocity_tangent, self._room, carried,
+        )  # fmt: skip
+        _add_pairs(self.pairs.ends, pairs.node_wrench, residual)
+        rows = None
+        if self.constraints:
+            rows, force = constraint_rows(
+                self.constraints, state.time, state.constraint_multiplier,
+                state.position, state.rotation, state.velocity, velocity_tangent,
+            )  # fmt: skip
+            residual += force.reshape(-1, 6)
+        residual[0] = 0.0
+        return Balance(residual, nodes, pairs, rows)
+
+    def solve(self, balance: Balance, scale: float) -> tuple[Array, Array, Array]:
+        """Newton's correction: variations (n,6), pair and constraint multipliers."""
+        return self.solver.solve(
+            balance.nodes, balance.pairs, balance.residual, scale, balance.rows
+        )
+
+    @cached_property
+    def stiffness_scale(self) -> float:
+        """A typical stiffness N/m, to weigh constraints with."""
+        diagonal = np.einsum("mii->mi", self.pairs.stiffness)[:, :3]
+        return float(diagonal[diagonal > 0].mean()) if (diagonal > 0).any() else 1.0
+
+    @cached_property
+    def mass_scale(self) -> float:
+        """A typical mass of a frame, kg."""
+        return float(self.mass[1:, 0, 0].mean()) if len(self) > 1 else 1.0
+
+    def momentum(self, state: State) -> Array:
+        """Linear and angular momentum (6,) about the origin, global axes."""
+        local = np.einsum("nij,nj->ni", self.mass, state.velocity)
+        linear = np.einsum("nij,nj->ni", state.rotation, local[:, :3])
+        angular = np.einsum("nij,nj->ni", state.rotation, local[:, 3:])
+        angular += np.cross(state.position, linear)
+        return np.concatenate([linear.sum(axis=0), angular.sum(axis=0)])
+
+    def energies(self, state: State) -> tuple[float, float, float]:
+        """Kinetic, elastic and gravitational energy, J (gravity's is zero at the origin)."""
+        kinetic = 0.5 * np.einsum("ni,nij,nj->", state.velocity, self.mass, state.velocity)
+        strain = self.pair_motion(state) - self.pairs.reference
+        elastic = 0.5 * np.einsum("mi,mij,mj->", strain, self.pairs.stiffness, strain)
+        moment = self.weight[:, :1] * state.position + np.einsum(
+            "nij,nj->ni", state.rotation, self.weight[:, 1:]
+        )
+        return float(kinetic), float(elastic), float(-(moment @ self.gravity).sum())
+
+    def pair(self, name: str) -> int:
+        """The number of a joint or spring; raises InputError with the nearest names."""
+        if name not in self.pair_names:
+            raise InputError(name, "no such joint", did_you_mean(name, self.pair_names))
+        return self.pair_names.index(name)
+
+    def set_torque(self, name: str, torque: float) -> None:
+        """Torque N m about a hinge's axis on its second frame, and its reaction on the first."""
+        self.pairs.preload[self.pair(name), 5] = -torque
+
+    def still(self) -> Array:
+        """Tangent (n,6,6) of twists that do not depend on the variations."""
+        return np.zeros((len(self), 6, 6))
+
+    def pair_answer(self, state: State) -> PairAnswer:
+        """Relative motions, wrenches and node wrenches of the pairs at a state."""
+        self.set_time(state.time)
+        return answer(
+            self.pairs, state.multiplier, state.position, state.rotation, state.velocity,
+            self.still(), empty_answer(len(self.pairs)),
+        )  # fmt: skip
+
+    def pair_motion(self, state: State) -> Array:
+        """Relative motions (m,6) of the pairs at a state."""
+        return self.pair_answer(state).motion
+
+    def violation(self, state: State) -> float:
+        """Largest violation of the position constraints, m or rad."""
+        motion = self.pair_motion(state)[self.pairs.locked]
+        others = [
+            c.violation(state.time, state.position[k], state.rotation[k], state.velocity[k])
+            for c, k in self.constraints
+            if c.holonomic
+        ]
+        return float(np.abs(np.concatenate([motion, *others])).max(initial=0.0))
+
+
+def spin_twists(state: State, point: Array, angular_velocity: Array) -> Array:
+    """Body twists (n,6) of a rigid rotation (3,) rad/s about a fixed point (3,) m."""
+    spatial = np.concatenate([-np.cross(angular_velocity, point), angular_velocity])
+    twists = np.zeros((len(state.position), 6))
+    for i in range(1, len(twists)):
+        R = state.rotation[i]
+        twists[i] = adjoint(R.T.copy(), -R.T @ state.position[i]) @ spatial
+    return twists
+
+
+def with_spin(state: State, point: Array, angular_velocity: Array) -> State:
+    """The state turning steadily as a whole; in body axes its twists are constant."""
+    return replace(
+        state,
+        velocity=spin_twists(state, point, angular_velocity),
+        acceleration=np.zeros_like(state.acceleration),
+    )
+
+
+def _add_load_tangents(
+    forces: Forces, R: Array, v: Array, velocity_tangent: Array, acceleration_tangent: Array,
+    nodes: Array,
+) -> None:  # fmt: skip
+    """Add stiff loads' blocks, turned from global into body axes."""
+    if forces.stiffness is None and forces.damping is None and forces.mass is None:
+        return
+    turn = np.zeros((len(R), 6, 6))
+    turn[:, :3, :3] = turn[:, 3:, 3:] = R
+    back = turn.transpose(0, 2, 1)
+    if forces.stiffness is not None:
+        nodes += back @ forces.stiffness @ turn
+    # a variation turns the body's axes, in which v is given, and with them the global velocity
+    rotated = np.zeros_like(turn)
+    rotated[:, :3, 3:] = -hats(v[:, :3])
+    rotated[:, 3:, 3:] = -hats(v[:, 3:])
+    if forces.damping is not None:
+        nodes += back @ forces.damping @ turn @ (velocity_tangent + rotated)
+    if forces.mass is not None:
+        nodes += back @ forces.mass @ turn @ acceleration_tangent
+
+
+def hats(a: Array) -> Array:
+    """Cross-product matrices (n,3,3) of vectors (n,3)."""
+    return np.cross(np.eye(3)[None], a[:, None, :])

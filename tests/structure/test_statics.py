@@ -1,0 +1,133 @@
+"""Static equilibrium: closed forms, orders of convergence, and errors that name the cause."""
+
+import numpy as np
+import pytest
+
+from galerna.errors import ConvergenceError, InputError
+from galerna.structure.assembly import Structure
+from galerna.structure.beam import discretise, nodal_loads, straight, uniform
+from galerna.structure.bodies import rigid_body
+from galerna.structure.joints import hinge, rigid
+from galerna.structure.statics import static_equilibrium
+from galerna.structure.system import Forces
+
+from .models import cantilever, coupled_sections
+
+INERTIA = np.array([1.0, 1.0, 1.0, 1e-3, 1e-3, 1e-3])
+SLENDER = uniform(np.array([1e10, 1e10, 1e10, 1e6, 1e6, 1e6]), INERTIA)
+
+
+def test_a_moment_rolls_the_beam_into_a_circle():
+    system, tip = cantilever(10, SLENDER)
+    forces = Forces.none(len(system))
+    forces.follower[tip, 4] = 2 * np.pi * 1e6 / 10.0
+    state = static_equilibrium(system, loads=forces, steps=10)
+    assert np.abs(state.position[tip]).max() < 1e-8
+
+
+def test_the_coupled_beam_is_exact_under_end_loads_in_the_linear_range():
+    """Compliance of a uniform beam: integral of the sections' compliance times the moments."""
+    sections = coupled_sections()
+    load = np.array([0.01, -0.02, 0.03, 0.01, 0.02, -0.01])
+    compliance = np.linalg.inv(sections.stiffness[0])
+    expected = np.zeros(6)
+    z, w = np.polynomial.legendre.leggauss(4)
+    for arm, weight in zip(5.0 * (1 - z), 5.0 * w, strict=True):  # distance to the tip
+        lever = np.eye(6)
+        lever[3, 1], lever[4, 0] = -arm, arm
+        expected += weight * lever.T @ compliance @ lever @ load
+    for n in (1, 3):
+        system, tip = cantilever(n, sections)
+        forces = Forces.none(len(system))
+        forces.dead[tip] = load * 1e-3
+        state = static_equilibrium(system, loads=forces)
+        shift = (state.position[tip] - [0, 0, 10.0]) * 1e3
+        assert np.allclose(shift, expected[:3], atol=2e-6 * np.abs(expected[:3]).max(), rtol=0)
+
+
+def test_large_bending_converges_at_fourth_order_in_the_mesh():
+    tips = []
+    for n in (4, 8, 16, 64):
+        system, tip = cantilever(n, SLENDER)
+        forces = Forces.none(len(system))
+        forces.dead[tip, 0] = 1e6 / 10.0**2
+        tips.append(static_equilibrium(system, loads=forces).position[tip])
+    errors = [np.linalg.norm(tip - tips[-1]) for tip in tips[:3]]
+    rates = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert (rates > 3.5).all()
+
+
+def test_a_distributed_load_and_weight_give_the_textbook_deflection():
+    q, length = 2.0, 10.0
+    system, tip = cantilever(4, SLENDER, length)
+    beam = discretise(straight(np.zeros(3), np.eye(3), length), length, SLENDER,
+                      np.linspace(0, 1, 5))  # fmt: skip
+    forces = Forces.none(len(system))
+    forces.dead[1:] = nodal_loads(
+        beam, lambda s: np.tile([q, 0, 0, 0, 0, 0.0], (len(s), 1)), length
+    )[1:]
+    deflection = static_equilibrium(system, loads=forces).position[tip, 0]
+    assert deflection == pytest.approx(q * length**4 / 8e6, rel=1e-4)
+    weighed, tip = cantilever(4, SLENDER, length, gravity=(q, 0.0, 0.0))
+    assert static_equilibrium(weighed).position[tip, 0] == pytest.approx(deflection, rel=1e-5)
+
+
+def test_the_root_carries_the_load():
+    system, tip = cantilever(6, SLENDER)
+    forces = Forces.none(len(system))
+    forces.dead[tip, 1] = 1e3
+    state = static_equilibrium(system, loads=forces)
+    root = -system.pair_answer(state).node_wrench[0, :6]
+    x = state.position[tip]
+    assert np.allclose(root[:3], [0, 1e3, 0], atol=1e-4)
+    assert np.allclose(root[3:], np.cross(x, [0, 1e3, 0]), atol=1e-3)
+
+
+def test_steady_rotation_of_a_bar_pulls_as_it_should():
+    """Root tension m omega^2 L^2 / 2 of a bar that turns about its root."""
+    s = Structure((0.0, 0.0, 0.0))
+    curve = straight(np.zeros(3), np.eye(3), 10.0)
+    names = s.beam("bar", discretise(curve, 10.0, SLENDER, np.linspace(0, 1, 5)))
+    s.join(rigid("clamp", "ground", names[0], np.zeros(3)))
+    system = s.build()
+    state = static_equilibrium(system, spin=(np.zeros(3), np.array([3.0, 0.0, 0.0])))
+    root = -system.pair_answer(state).node_wrench[system.pair("clamp"), :6]
+    assert root[2] == pytest.approx(1.0 * 9.0 * 10.0**2 / 2, rel=1e-6)
+
+
+def test_redundant_joints_are_named():
+    s = Structure()
+    s.frame("bar", [0.0, 0, 0], mass=rigid_body(1.0, None, np.ones(3)))
+    y = np.array([0.0, 1.0, 0.0])
+    s.join(hinge("left", "ground", "bar", np.zeros(3), y))
+    s.join(hinge("right", "ground", "bar", y, y))
+    with pytest.raises(InputError, match=r"left, right.*hold the same motion twice"):
+        s.build()
+
+
+def test_contradicting_joints_are_named():
+    s = Structure()
+    s.frame("bar", [0.0, 0, 0], mass=rigid_body(1.0, None, np.ones(3)))
+    y = np.array([0.0, 1.0, 0.0])
+    s.join(rigid("weld", "ground", "bar", np.zeros(3)))
+    s.join(hinge("motor", "ground", "bar", y, y, angle=lambda t: 0.3 + t))
+    with pytest.raises(InputError, match=r"weld, motor.*contradict"):
+        s.build()
+
+
+def test_a_loose_structure_is_an_error_that_says_where():
+    s = Structure()
+    s.frame("brick", [0.0, 0, 0], mass=rigid_body(1.0, None, np.ones(3)))
+    with pytest.raises(ConvergenceError, match="brick"):
+        static_equilibrium(s.build())
+
+
+def test_bad_input_is_named():
+    s = Structure()
+    with pytest.raises(InputError, match="did you mean 'ground'"):
+        s.join(rigid("weld", "grund", "ground", np.zeros(3)))
+    s.frame("ghost", [0.0, 0, 0])
+    with pytest.raises(InputError, match="ghost"):
+        s.build()
+    with pytest.raises(InputError, match="not positive definite"):
+        cantilever(2, uniform(np.array([1.0, 1, 1, 1, -1, 1]), INERTIA))
