@@ -158,6 +158,15 @@ def test_bombs_are_refused_soon_and_small(name: str, tmp_path: Path) -> None:
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 1_000_000  # kB
 
 
+def test_files_that_include_many_that_include_many_end(tmp_path: Path) -> None:
+    for i in range(4):
+        lines = [f"k{j}: !include level{i + 1}.yaml" for j in range(200)]
+        (tmp_path / f"level{i}.yaml").write_text("\n".join(lines))
+    (tmp_path / "level4.yaml").write_text("end: 1\n")
+    with pytest.raises(InputError, match="values once aliases are followed"):
+        windio.read(tmp_path / "level0.yaml")
+
+
 def test_a_file_too_large_is_not_opened(tmp_path: Path) -> None:
     path = tmp_path / "large.yaml"
     with path.open("wb") as file:

@@ -50,7 +50,7 @@ def load(path: str | Path) -> Document:
     itself without end, or holds more than a turbine can need.
     """
     path = Path(path)
-    data = _load(path, 0)
+    data = _load(path, 0, {})
     _bounded(path, data)
     return Document(path, data)
 
@@ -69,7 +69,14 @@ def read_text(path: Path) -> str:
         raise InputError(str(path), f"is not a text file: byte {e.start} is not UTF-8") from e
 
 
-def _load(path: Path, depth: int) -> Any:
+def _load(path: Path, depth: int, known: dict[Path, Any]) -> Any:
+    """The data of a file; ``known`` keeps what was included, so that no file is read twice."""
+    if path not in known:
+        known[path] = _parse(path, depth, known)
+    return known[path]
+
+
+def _parse(path: Path, depth: int, known: dict[Path, Any]) -> Any:
     from ruamel.yaml.error import MarkedYAMLError, YAMLError
 
     if depth > DEEPEST_INCLUDE:
@@ -79,7 +86,7 @@ def _load(path: Path, depth: int) -> Any:
         what = f"holds {len(text) // 1_000_000} MB beside rows of numbers, more than any turbine"
         raise InputError(str(path), what)
     try:
-        return _parser(path, rows, depth).load(text)
+        return _parser(path, rows, depth, known).load(text)
     except MarkedYAMLError as e:
         line = f", line {e.problem_mark.line + 1}" if e.problem_mark else ""
         raise InputError(f"{path}{line}", f"is not valid YAML: {e.problem or e}") from e
@@ -110,7 +117,7 @@ def _take_rows(text: str) -> tuple[str, list[list[float]]]:
     return _ROW.sub(take, text), rows
 
 
-def _parser(path: Path, rows: list[list[float]], depth: int) -> Any:
+def _parser(path: Path, rows: list[list[float]], depth: int, known: dict[Path, Any]) -> Any:
     from ruamel.yaml import YAML
     from ruamel.yaml.constructor import SafeConstructor
 
@@ -120,7 +127,7 @@ def _parser(path: Path, rows: list[list[float]], depth: int) -> Any:
     if rows:
         Constructor.add_constructor("!row", lambda _, node: rows[int(node.value)])
     Constructor.add_constructor(
-        "!include", lambda _, node: _load(_included(path, str(node.value)), depth + 1)
+        "!include", lambda _, node: _load(_included(path, str(node.value)), depth + 1, known)
     )
     yaml = YAML(typ="safe", pure=True)
     yaml.Constructor = Constructor
