@@ -55,6 +55,7 @@ def test_a_good_case_is_read():
         ("exponent: 0.2", "exponent: 7", "inflow.shear.exponent: expected less than or equal to 2"),
         ("8.0", "fast", "6: inflow.wind_speed_m_s: expected a valid number, found 'fast'"),
         ("duration_s: 10", "duration_s: -10", "3: duration_s: expected greater than 0, found -10"),
+        ("duration_s: 10", "duration_s: 0", "3: duration_s: expected greater than 0, found 0"),
         ("duration_s: 10", "duration_s: .nan", "duration_s: expected a finite number, found .nan"),
         ("duration_s: 10", "duration_s: 0.01", "duration_s: 0.01 s is less than one time_step_s"),
         ("interval_s: 0.1", "interval_s: 0.12", "14: outputs.interval_s: 0.12 s is not a whole"),
@@ -76,6 +77,11 @@ def test_a_good_case_is_read():
 def test_what_is_wrong_is_said(wrong, right, message):
     assert wrong in GOOD
     assert message in refused(GOOD.replace(wrong, right, 1))
+
+
+def test_a_run_shorter_than_the_usual_interval_has_a_record():
+    text = GOOD.replace("duration_s: 10", "duration_s: 0.02").replace("0.05", "0.001")
+    assert parse(text.replace("outputs:\n  interval_s: 0.1\n", "")).case.record_every == 20
 
 
 def test_a_missing_key_says_what_it_is_for():

@@ -135,6 +135,6 @@ class Case(Block):
 
     @property
     def record_every(self) -> int:
-        """Steps from one record to the next."""
-        interval = self.outputs.interval_s or DEFAULT_INTERVAL
-        return max(round(interval / self.time_step_s), 1)
+        """Steps from one record to the next; a run has one record at least."""
+        interval = self.outputs.interval_s or min(DEFAULT_INTERVAL, self.duration_s)
+        return max(int(interval / self.time_step_s + 1e-6), 1)

@@ -66,7 +66,9 @@ def _shown(value: Any) -> str:
         return "a mapping"
     if isinstance(value, Sequence) and not isinstance(value, str):
         return f"a list of {len(value)}"
-    text = {True: "true", False: "false", None: "nothing"}.get(value) or repr(value)
+    if isinstance(value, bool):
+        return str(value).lower()
+    text = "nothing" if value is None else repr(value)
     return text if len(text) <= 60 else text[:57] + "..."
 
 
