@@ -10,7 +10,7 @@ import pytest
 import small_windio
 
 from galerna.turbine import Turbine, windio
-from galerna.turbine.model import Published
+from galerna.turbine.model import Platform, Published
 from galerna.turbine.summary import fitted_airfoils, point_masses, summary
 
 
@@ -56,6 +56,13 @@ def test_mass_centre_of_the_machine(turbine: Turbine) -> None:
     found = figures(turbine)
     assert found["overall_center_of_mass_x"] == pytest.approx(x / 2)
     assert found["overall_center_of_mass_z"] == pytest.approx((15.0 + z) / 2)
+
+
+def test_a_platform_weighs_in(turbine: Turbine) -> None:
+    alone = figures(turbine)["overall_center_of_mass_z"]
+    platform = Platform((0.0, 0.0, 0.0), 6000.0, (0.0, 0.0, -10.0), (1.0, 1.0, 1.0))
+    afloat = figures(replace(turbine, platform=platform))["overall_center_of_mass_z"]
+    assert afloat == pytest.approx((alone - 10.0) / 2)
 
 
 def test_disagreement_is_shown(turbine: Turbine) -> None:

@@ -212,7 +212,7 @@ class Tower:
 class Platform:
     """Floating platform as a rigid body about its reference point, global axes.
 
-    ``center_of_mass`` (3,) m; ``inertia`` (3,) kg m2 in roll, pitch and yaw about the
+    ``center_of_mass`` (3,) m from the origin; ``inertia`` (3,) kg m2 in roll, pitch and yaw about the
     centre of mass.
     """
 

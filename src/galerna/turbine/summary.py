@@ -139,7 +139,7 @@ def _tower_center(turbine: Turbine) -> float | None:
 
 
 def _center_of_mass(axis: int, turbine: Turbine) -> float | None:
-    """Mass centre of tower, nacelle and rotor, global axes; over all azimuths of the rotor."""
+    """Mass centre of the machine, platform included, global axes; over all azimuths."""
     blade, tower = _blade(turbine), _tower(turbine)
     if blade is None or tower is None:
         return None
@@ -155,6 +155,8 @@ def _center_of_mass(axis: int, turbine: Turbine) -> float | None:
         (hub.mass, apex + hub.center_of_mass * shaft),
         (count * blade[0].sum(), apex + (blade[0] @ downwind) / blade[0].sum() * shaft),
     ]
+    if turbine.platform is not None:
+        parts.append((turbine.platform.mass, np.array(turbine.platform.center_of_mass)))
     total = sum(mass for mass, _ in parts)
     return float(sum(mass * place[axis] for mass, place in parts) / total)
 
