@@ -150,6 +150,11 @@ class Generated(Turbulence):
     turbulence_class: TurbulenceClass | None = Field(
         None, description="Amount of the normal turbulence model of IEC 61400-1 instead."
     )
+    normalise: Literal["box", "theory", "sample"] = Field(
+        "box",
+        description="The amount is what a box of this size is expected to hold, that of the whole "
+        "spectrum (a finite box then holds less), or that of this very sample.",
+    )
     seed: int | None = Field(None, description="Seed; that of the case if not given.")
     points_across: Annotated[int, Field(ge=4, le=512)] = Field(
         32, description="Points over the width; the same spacing holds over the height."
@@ -190,11 +195,6 @@ class Mann(Generated):
     alpha_epsilon: Positive | None = Field(
         None, description="alpha epsilon^(2/3) in m^(4/3)/s2, instead of an intensity or class."
     )
-    normalise: Literal["theory", "box", "sample"] = Field(
-        "theory",
-        description="The deviation is that of the whole spectrum, of what this box can hold, "
-        "or of this very sample.",
-    )
 
     def amounts(self) -> dict[str, object]:
         return {**super().amounts(), "alpha_epsilon": self.alpha_epsilon}
@@ -206,9 +206,6 @@ class Kaimal(Generated):
     kind: Literal["kaimal"]
     coherent: Literal["u", "uvw"] = Field(
         "u", description="Components with the standard's coherence; it gives that of u alone."
-    )
-    normalise: Literal["theory", "sample"] = Field(
-        "theory", description="The deviation is that of the whole spectrum, or of this sample."
     )
 
 
