@@ -89,14 +89,25 @@ def rotor_loads(
     In: ``points`` and ``wind`` (m,3) at the aerodynamic centres, the frames, ``shape`` (m,7),
     ``table`` (n,k,5) and ``stall`` (n,9) of the n stations of a blade, ``spanwise`` (n,n), the
     strips' memories ``before`` (m,16) and the step ``dt`` s; a negative one means that the
-    present state has lasted for ever. Out: ``after`` (m,16), ``strips`` (m,27), ``totals`` (8 + 2B)
+    present state has lasted for ever. Out: ``after`` (m,16), ``strips`` (m,28), ``totals`` (8 + 2B)
     and the rows of ``force`` N and ``moment`` N m (.,3).
     """
     m = shape.shape[0]
     hub, shaft = row(position, m), axis(rotation, m, 0)
+    turning = row(angular_velocity, m)
     for i in range(m):
         s.place_strip(
-            i, shape, points, rotation, velocity, angular_velocity, wind, hub, shaft, strips
+            i,
+            shape,
+            points,
+            rotation,
+            velocity,
+            angular_velocity,
+            wind,
+            hub,
+            shaft,
+            turning,
+            strips,
         )
         _balance(rotor, i, table, shape, before, after, strips)
     _mean_wind(strips, shape, wind, row(velocity, m), rotation, totals)
@@ -113,7 +124,7 @@ def rotor_loads(
         _filter_lift(rotor, spanwise, shape, after, strips)
     for i in range(m):
         _load(rotor, i, shape, rotation, strips, force, moment)
-    totals[ROTOR_SPEED] = dot(row(angular_velocity, m), shaft)
+    totals[ROTOR_SPEED] = dot(turning, shaft)
     _total(rotor, position, rotation, force, moment, totals)
 
 
@@ -235,8 +246,10 @@ def _section(
     strips[i, s.INFLOW_ANGLE] = atan2(across, along)
     c, sn = cos(strips[i, s.PITCH]), sin(strips[i, s.PITCH])
     to_suction, to_trailing = across * c - along * sn, across * sn + along * c
-    turning = strips[i, s.TURNING] if rotor.three_quarter_chord else 0.0
-    to_suction += 0.5 * chord * turning
+    torsion = 0.0
+    if rotor.three_quarter_chord:
+        to_suction += 0.5 * chord * strips[i, s.TURNING]
+        torsion = strips[i, s.TORSION]  # steady coning bends the flow but accelerates no air
     angle = atan2(to_suction, to_trailing)
     strips[i, s.ANGLE_OF_ATTACK] = angle
     if not rotor.unsteady_airfoil:
@@ -244,7 +257,7 @@ def _section(
     else:
         start, end = before[i, STALL], after[i, STALL]
         if dt < 0.0:
-            start_stall(end, table, station, stall, chord, to_suction, to_trailing, turning)
+            start_stall(end, table, station, stall, chord, to_suction, to_trailing, torsion)
             start = end.copy()
         coefficients = advance_stall(
             start,
@@ -254,7 +267,7 @@ def _section(
             chord,
             to_suction,
             to_trailing,
-            turning,
+            torsion,
             max(dt, 0.0),
             end,
         )

@@ -32,17 +32,18 @@ RADIAL = 2  #: cosine of the angle between the span and the radius
 PITCH = 3  #: angle from the rotor plane to the chord, rad
 NORMAL_WIND, TANGENTIAL_WIND = 4, 5  #: air velocity without the rotor's induction, m/s
 TURNING = 6  #: angular velocity about the span, nose-up positive, rad/s
-NORMAL = 7  #: unit vector across the span, as near the shaft as it can be
-TANGENT = 10  #: unit vector in the rotor plane, against the rotation
-OUTWARDS = 13  #: unit vector from the shaft axis to the strip
-LOSS = 16  #: Prandtl's factor
-INDUCED_NORMAL, INDUCED_SWIRL = 17, 18  #: induced velocity against the wind and swirl, m/s
-SPEED = 19  #: relative speed, m/s
-INFLOW_ANGLE = 20  #: rad
-ANGLE_OF_ATTACK = 21  #: rad, at the point that the options name
-LIFT, DRAG, MOMENT = 22, 23, 24  #: coefficients
-NORMAL_FORCE, TANGENTIAL_FORCE = 25, 26  #: N/m along NORMAL and against TANGENT
-STRIP_COLUMNS = 27
+TORSION = 7  #: the part of it that is not the rotor's own, rad/s
+NORMAL = 8  #: unit vector across the span, as near the shaft as it can be
+TANGENT = 11  #: unit vector in the rotor plane, against the rotation
+OUTWARDS = 14  #: unit vector from the shaft axis to the strip
+LOSS = 17  #: Prandtl's factor
+INDUCED_NORMAL, INDUCED_SWIRL = 18, 19  #: induced velocity against the wind and swirl, m/s
+SPEED = 20  #: relative speed, m/s
+INFLOW_ANGLE = 21  #: rad
+ANGLE_OF_ATTACK = 22  #: rad, at the point that the options name
+LIFT, DRAG, MOMENT = 23, 24, 25  #: coefficients
+NORMAL_FORCE, TANGENTIAL_FORCE = 26, 27  #: N/m along NORMAL and against TANGENT
+STRIP_COLUMNS = 28
 
 
 @njit(cache=True)
@@ -82,12 +83,14 @@ def place_strip(
     wind: Array,
     hub: Vector,
     shaft: Vector,
+    rotor_turning: Vector,
     strips: Array,
 ) -> None:
     """Fill the geometry and the undisturbed velocities of strip i.
 
     ``points`` are the aerodynamic centres and ``wind`` is the air's velocity there; ``hub``
-    is a point of the shaft axis and ``shaft`` its downwind direction; all in global axes.
+    is a point of the shaft axis, ``shaft`` its downwind direction and ``rotor_turning`` the
+    angular velocity of the hub; all in global axes.
     """
     span, suction = axis(rotation, i, 2), axis(rotation, i, 0)
     along = dot(span, shaft)
@@ -106,6 +109,7 @@ def place_strip(
     strips[i, PITCH] = atan2(-dot(suction, tangent), dot(suction, normal))
     strips[i, NORMAL_WIND], strips[i, TANGENTIAL_WIND] = dot(air, normal), dot(air, tangent)
     strips[i, TURNING] = dot(turning, span)
+    strips[i, TORSION] = dot(subtract(turning, rotor_turning), span)
     _keep(strips, i, NORMAL, normal)
     _keep(strips, i, TANGENT, tangent)
     _keep(strips, i, OUTWARDS, outwards)
