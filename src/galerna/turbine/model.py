@@ -212,8 +212,8 @@ class Tower:
 class Platform:
     """Floating platform as a rigid body about its reference point, global axes.
 
-    ``center_of_mass`` (3,) m from the origin; ``inertia`` (3,) kg m2 in roll, pitch and yaw about the
-    centre of mass.
+    ``center_of_mass`` (3,) m from the origin; ``inertia`` (3,) kg m2 in roll, pitch and
+    yaw about the centre of mass.
     """
 
     reference_point: tuple[float, float, float]
