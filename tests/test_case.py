@@ -120,6 +120,11 @@ def test_a_dictionary_is_a_case_too():
     assert loaded.lasting(3.0).case.duration_s == 3.0
 
 
+def test_a_dictionary_has_no_lines_to_name():
+    with pytest.raises(InputError, match="^case: turbin: unknown key"):
+        load({**parse(GOOD).document.values, "turbin": "x"})
+
+
 def test_a_case_made_in_python_is_read_back_as_it_is():
     case = parse(GOOD).case
     assert load(case).case == case

@@ -131,6 +131,12 @@ def test_the_steady_operating_point_comes_from_the_turbine():
     assert speed == pytest.approx(expected)
 
 
+def test_a_rotor_turned_in_still_air_takes_power():
+    result = galerna.run({**CASE, "inflow": {"wind_speed_m_s": 0.0}})
+    assert -1e6 < float(result["rotor_power"].max()) < 0.0
+    assert abs(float(result["rotor_thrust"][-1])) < 1e5
+
+
 def test_pitch_given_for_the_wrong_number_of_blades_is_refused():
     operation = {"rotor_speed_rpm": 9.0, "pitch_deg": [0.0, 1.0]}
     with pytest.raises(InputError, match=r"operation.*pitch_deg: 2 values for 3 blades"):

@@ -38,15 +38,18 @@ class CaseError(InputError):
     def __init__(self, document: Document, problems: list[Problem]) -> None:
         self.problems = tuple(problems)
         located = sorted(((document.line(p.path), p) for p in problems), key=lambda pair: pair[0])
+        numbered = bool(document.lines)  # a case that is not a file has none
         if len(located) == 1:
             line, problem = located[0]
-            where = f"{document.name}:{line}" + (f": {problem.key}" if problem.key else "")
+            where = document.name + (f":{line}" if numbered else "")
+            where += f": {problem.key}" if problem.key else ""
             super().__init__(where, problem.what, problem.hint)
             return
         lines = [f"{len(located)} problems"]
         for line, problem in located:
+            at = f"line {line}: " if numbered else ""
             key = f"{problem.key}: " if problem.key else ""
-            lines.append(f"  line {line}: {key}{problem.what}")
+            lines.append(f"  {at}{key}{problem.what}")
             lines += [f"      {problem.hint}"] if problem.hint else []
         super().__init__(document.name, "\n".join(lines))
 
