@@ -77,7 +77,7 @@ class Structure:
                                     beam.mass[i]))  # fmt: skip
         for e in range(len(beam.reference)):
             first, second = names[e], names[e + 1]
-            offset = self._place(first, beam.position[e], beam.rotation[e])
+            offset = self.place(first, beam.position[e], beam.rotation[e])
             self._add_pair(
                 f"{name}:{e}", first, second, offset, (np.zeros(3), np.eye(3)),
                 beam.reference[e], beam.stiffness[e], beam.damping[e], (),
@@ -88,7 +88,7 @@ class Structure:
     def join(self, joint: Joint) -> None:
         """Add a joint or spring."""
         places = [
-            self._place(frame, joint.position, joint.axes) for frame in (joint.first, joint.second)
+            self.place(frame, joint.position, joint.axes) for frame in (joint.first, joint.second)
         ]
         if joint.placement is not None:
             places[0] = self._drive(joint, places[0])
@@ -102,6 +102,10 @@ class Structure:
         for frame in constraint.frames:
             self.index(frame)
         self._constraints.append(constraint)
+
+    def position(self, name: str) -> Array:
+        """Where a frame stands (3,) m."""
+        return self._position[self.index(name)]
 
     def index(self, name: str) -> int:
         """The number of a frame; raises InputError with the nearest names."""
@@ -126,14 +130,14 @@ class Structure:
             check_constraints(system)
         return system
 
-    def _place(self, frame: str, position: Array, rotation: Array) -> tuple[Array, Array]:
+    def place(self, frame: str, position: Array, rotation: Array) -> tuple[Array, Array]:
         """A global position and rotation in the axes of a frame."""
         i = self.index(frame)
         R = self._rotation[i]
         return R.T @ (position - self._position[i]), R.T @ rotation
 
     def _add_at(self, frame: str, position: Array, rotation: Array, mass: Array) -> None:
-        x, R = self._place(frame, position, rotation)
+        x, R = self.place(frame, position, rotation)
         self.add_mass(frame, moved(mass, R, x))
 
     def _drive(self, joint: Joint, place: tuple[Array, Array]) -> tuple[Array, Array]:
