@@ -53,7 +53,7 @@ def test_a_good_case_is_read():
         ("power_law", "power_low", "did you mean 'power_law'"),
         ("exponent", "exponet", "did you mean 'exponent'"),
         ("exponent: 0.2", "exponent: 7", "inflow.shear.exponent: expected less than or equal to 2"),
-        ("8.0", "fast", "6: inflow.wind_speed_m_s: expected a valid number, found 'fast'"),
+        ("8.0", "fast", "6: inflow.wind_speed_m_s: expected a number, found 'fast'"),
         ("duration_s: 10", "duration_s: -10", "3: duration_s: expected greater than 0, found -10"),
         ("duration_s: 10", "duration_s: 0", "3: duration_s: expected greater than 0, found 0"),
         ("duration_s: 10", "duration_s: .nan", "duration_s: expected a finite number, found .nan"),
@@ -71,7 +71,12 @@ def test_a_good_case_is_read():
         ),
         ("  model: bem", "\tmodel: bem", "9: not valid YAML"),
         ("  model: bem", "\tmodel: bem", "indent with spaces"),
-        ("8.0", "[8.0, 9.0]", "expected a valid number, found a list of 2"),
+        ("  model: bem", "  tip_loss: maybe", "9: aerodynamics.tip_loss: expected true or false"),
+        ("interval_s: 0.1", "channels: x", "14: outputs.channels: expected a list, found 'x'"),
+        ("operation:", "operation: steady\nx:", "10: operation: expected a mapping of keys"),
+        ("time_step_s: 0.05", "seed: 1.5", "4: seed: expected a whole number, found 1.5"),
+        ("[0, 2]", "[0, x]", "12: operation.pitch_deg.values[1]: expected a number, found 'x'"),
+        ("8.0", "[8.0, 9.0]", "expected a number, found a list of 2"),
     ],
 )
 def test_what_is_wrong_is_said(wrong, right, message):

@@ -11,12 +11,29 @@ from pydantic import BaseModel, ValidationError
 from galerna.case.document import KeyPath, Problem
 from galerna.errors import did_you_mean
 
+#: what pydantic calls by Python's names
+PLAIN_WORDS = {
+    "model_type": "a mapping of keys to values",
+    "dict_type": "a mapping of keys to values",
+    "tuple_type": "a list",
+    "list_type": "a list",
+    "string_type": "a text",
+    "float_type": "a number",
+    "float_parsing": "a number",
+    "int_parsing": "a whole number",
+    "int_from_float": "a whole number",
+    "bool_parsing": "true or false",
+    "bool_type": "true or false",
+}
+
 
 def problems_of(error: ValidationError, model: type[BaseModel], values: Any) -> list[Problem]:
     """One problem for every key of ``values`` that ``model`` refuses."""
     problems: dict[KeyPath, Problem] = {}
     for entry in error.errors(include_url=False):
         path = _path(entry["loc"], values, entry["type"])
+        if entry["type"] == "too_short" and any(p[: len(path)] == path for p in problems):
+            continue  # its items were refused, and are named
         problems.setdefault(path, _problem(path, entry, model))
     return list(problems.values())
 
@@ -56,6 +73,7 @@ def _problem(path: KeyPath, entry: Mapping[str, Any], model: type[BaseModel]) ->
     message = entry["msg"].removeprefix("Value error, ")
     if message.startswith("Input should be "):
         expected = message.removeprefix("Input should be ").split(", unable to")[0]
+        expected = PLAIN_WORDS.get(kind, expected)
         return Problem(path, f"expected {expected}, found {_shown(found)}")
     return Problem(path, message[:1].lower() + message[1:])
 
