@@ -11,7 +11,7 @@ import numpy as np
 from galerna.aero.bem import channels
 from galerna.aero.bem import rotor as r
 from galerna.aero.bem import strips as s
-from galerna.aero.bem.dynamic_stall import section_parameters, separation_table
+from galerna.aero.bem.dynamic_stall import JONES, section_parameters, separation_table
 from galerna.aero.bem.momentum import Momentum
 from galerna.aero.bem.options import BemOptions
 from galerna.aero.bem.rotational_augmentation import augment
@@ -267,17 +267,28 @@ def stall_tables(sections: BladeSections, options: BemOptions) -> tuple[Array, A
     """The polars with the separation columns (n,m,5) and the stall model's constants (n,9)."""
     zero_lift = np.array([u.zero_lift_angle for u in sections.unsteady])
     table, lift_line = separation_table(sections.table, zero_lift)
-    indicial = np.array(
-        [(*u.indicial_amplitudes, *u.indicial_exponents) for u in sections.unsteady]
-    )
+    indicial = np.array(JONES)
+    if options.indicial_response == "airfoil":
+        indicial = np.array(
+            [(*u.indicial_amplitudes, *u.indicial_exponents) for u in sections.unsteady]
+        )
     return table, section_parameters(lift_line, indicial)
 
 
 def spanwise_matrix(sections: BladeSections, length: float, rotor: r.Rotor) -> Array:
-    """The filter of the circulation along a blade (n,n); unloaded ends stay unloaded."""
-    if rotor.spanwise_filter == r.FILTER_OFF:
-        return np.zeros((len(sections), len(sections)))
-    matrix = filter_matrix(sections.span * length, sections.chord, (0.0, length))
+    """The filter of the circulation along a blade (n,n); unloaded ends stay unloaded.
+
+    Sections whose polar has no lift at all (the cylinders at the root) carry no circulation:
+    the filter ends midway between them and the first one outboard that does.
+    """
+    matrix = np.zeros((len(sections), len(sections)))
+    lifting = np.logical_and.accumulate(sections.table[::-1, :, 0].any(axis=1)).sum()
+    if rotor.spanwise_filter == r.FILTER_OFF or lifting < 2:
+        return matrix
+    first = len(sections) - int(lifting)
+    place, outer = sections.span * length, slice(first, None)
+    start = 0.5 * (place[first - 1] + place[first]) if first else 0.0
+    matrix[outer, outer] = filter_matrix(place[outer], sections.chord[outer], (start, length))
     matrix[(sections.span <= 0.0) & rotor.root_unloaded] = 0.0
     matrix[(sections.span >= 1.0) & rotor.tip_unloaded] = 0.0
     return matrix

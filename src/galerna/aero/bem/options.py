@@ -47,6 +47,12 @@ class BemOptions(BaseModel):
     unsteady_airfoil: Literal["beddoes_leishman", "none"] = Field(
         default="beddoes_leishman", description="Unsteady section aerodynamics with dynamic stall."
     )
+    indicial_response: Literal["jones", "airfoil"] = Field(
+        default="jones",
+        description="Constants A1, A2, b1, b2 of the attached flow's lag: R. T. Jones' for "
+        "incompressible flow, or those in the airfoil's data, which are often meant for the "
+        "compressible model of Beddoes and Leishman.",
+    )
     rotational_augmentation: Literal["none", "snel", "du_selig"] = Field(
         default="none", description="Stall delay by rotation, applied to the polars beforehand."
     )
