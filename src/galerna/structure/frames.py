@@ -11,6 +11,7 @@ Selig, Geometric Fundamentals of Robotics (2005), ch. 7.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import factorial
 
 import numpy as np
@@ -69,36 +70,60 @@ def rotation_about(axis: int, angle: float) -> Array:
 
 
 @njit(cache=True)
+def _set_hat(a: Array, start: int, A: Array, i: int, j: int) -> None:
+    """Write the cross-product matrix of ``a[start : start + 3]`` at A[i, j]."""
+    A[i, j + 1], A[i, j + 2], A[i + 1, j + 2] = -a[start + 2], a[start + 1], -a[start]
+    A[i + 1, j], A[i + 2, j], A[i + 2, j + 1] = a[start + 2], -a[start + 1], a[start]
+
+
+@njit(cache=True)
 def hat(a: Array) -> Array:
     """The matrix (3,3) of the cross product: ``hat(a) @ b = a x b``."""
     A = np.zeros((3, 3))
-    A[0, 1], A[0, 2], A[1, 2] = -a[2], a[1], -a[0]
-    A[1, 0], A[2, 0], A[2, 1] = a[2], -a[1], a[0]
+    _set_hat(a, 0, A, 0, 0)
     return A
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
-def multiply(A: Array, B: Array) -> Array:
-    """Matrix product; for blocks of six rows several times as fast as a call of BLAS."""
-    C = np.zeros((A.shape[0], B.shape[1]))
-    for i in range(A.shape[0]):
-        for k in range(A.shape[1]):
-            a = A[i, k]
-            for j in range(B.shape[1]):
-                C[i, j] += a * B[k, j]
-    return C
+def _product(rows: int, inner: int, columns: int) -> Callable[[Array, Array], Array]:
+    """``A @ B`` for blocks of known size, which the compiler unrolls."""
+
+    @njit(cache=True, error_model="numpy", fastmath=FAST)
+    def product(A: Array, B: Array) -> Array:
+        C = np.zeros((rows, columns))
+        for i in range(rows):
+            for k in range(inner):
+                a = A[i, k]
+                for j in range(columns):
+                    C[i, j] += a * B[k, j]
+        return C
+
+    return product
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
-def multiply_transposed(A: Array, B: Array) -> Array:
-    """``A.T @ B`` for small blocks."""
-    C = np.zeros((A.shape[1], B.shape[1]))
-    for k in range(A.shape[0]):
-        for i in range(A.shape[1]):
-            a = A[k, i]
-            for j in range(B.shape[1]):
-                C[i, j] += a * B[k, j]
-    return C
+def _transposed_product(rows: int, inner: int, columns: int) -> Callable[[Array, Array], Array]:
+    """``A.T @ B`` for blocks of known size."""
+
+    @njit(cache=True, error_model="numpy", fastmath=FAST)
+    def transposed_product(A: Array, B: Array) -> Array:
+        C = np.zeros((rows, columns))
+        for i in range(rows):
+            for k in range(inner):
+                a = A[k, i]
+                for j in range(columns):
+                    C[i, j] += a * B[k, j]
+        return C
+
+    return transposed_product
+
+
+multiply3 = _product(3, 3, 3)
+multiply6 = _product(6, 6, 6)
+multiply_6_6_12 = _product(6, 6, 12)
+multiply_12_6_12 = _product(12, 6, 12)
+multiply3_transposed = _transposed_product(3, 3, 3)
+multiply6_transposed = _transposed_product(6, 6, 6)
+multiply_12_6_6_transposed = _transposed_product(12, 6, 6)
+multiply_12_6_12_transposed = _transposed_product(12, 6, 12)
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
@@ -250,7 +275,7 @@ def adjoint(R: Array, x: Array) -> Array:
     A = np.zeros((6, 6))
     A[:3, :3] = R
     A[3:, 3:] = R
-    A[:3, 3:] = multiply(hat(x), R)
+    A[:3, 3:] = multiply3(hat(x), R)
     return A
 
 
@@ -258,9 +283,9 @@ def adjoint(R: Array, x: Array) -> Array:
 def ad(d: Array) -> Array:
     """The matrix (6,6) of the Lie bracket: ``ad(d) @ e = [d, e]``."""
     A = np.zeros((6, 6))
-    A[:3, :3] = hat(d[3:])
-    A[3:, 3:] = A[:3, :3]
-    A[:3, 3:] = hat(d[:3])
+    _set_hat(d, 3, A, 0, 0)
+    _set_hat(d, 3, A, 3, 3)
+    _set_hat(d, 0, A, 0, 3)
     return A
 
 
@@ -270,9 +295,9 @@ def bracket_by_twist(y: Array, dual: bool) -> Array:
     if not dual:
         return -ad(y)
     B = np.zeros((6, 6))
-    B[:3, 3:] = hat(y[:3])
-    B[3:, :3] = B[:3, 3:]
-    B[3:, 3:] = hat(y[3:])
+    _set_hat(y, 0, B, 0, 3)
+    _set_hat(y, 0, B, 3, 0)
+    _set_hat(y, 3, B, 3, 3)
     return B
 
 
@@ -281,9 +306,9 @@ def tangent(d: Array) -> Array:
     """T(d) (6,6): ``exp(d + e) = exp(d) exp(T(d) e)`` to first order in e."""
     s = d[3] ** 2 + d[4] ** 2 + d[5] ** 2
     A = ad(d)
-    A2 = multiply(A, A)
-    odd = _sum(_TANGENT_1, s)[0] * A + _sum(_TANGENT_3, s)[0] * multiply(A2, A)
-    even = _sum(_TANGENT_2, s)[0] * A2 + _sum(_TANGENT_4, s)[0] * multiply(A2, A2)
+    A2 = multiply6(A, A)
+    odd = _sum(_TANGENT_1, s)[0] * A + _sum(_TANGENT_3, s)[0] * multiply6(A2, A)
+    even = _sum(_TANGENT_2, s)[0] * A2 + _sum(_TANGENT_4, s)[0] * multiply6(A2, A2)
     return np.eye(6) + odd + even
 
 
@@ -308,8 +333,8 @@ def inverse_tangents(d: Array) -> tuple[Array, Array]:
     """T(d)^-1 and T(-d)^-1 (6,6), for angles below 2 pi."""
     a2, _, a4, _ = _inverse_coefficients(d[3] ** 2 + d[4] ** 2 + d[5] ** 2)
     A = ad(d)
-    A2 = multiply(A, A)
-    A4 = multiply(A2, A2)
+    A2 = multiply6(A, A)
+    A4 = multiply6(A2, A2)
     ahead = np.empty((6, 6))
     behind = np.empty((6, 6))
     for i in range(6):
@@ -323,29 +348,38 @@ def inverse_tangents(d: Array) -> tuple[Array, Array]:
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def inverse_tangent_slopes(d: Array, y: Array, dual: bool) -> tuple[Array, Array]:
-    """Derivatives (6,6) over d of ``T(d)^-1 y`` and ``T(-d)^-1 y`` for a twist y (6,).
+def _next_slope(A: Array, D: Array, y: Array, dual: bool) -> Array:
+    """Slope of ``A z`` over d, for z with the value y and the slope D."""
+    out = bracket_by_twist(y, dual)
+    for i in range(6):
+        for k in range(6):
+            a = A[i, k]
+            for j in range(6):
+                out[i, j] += a * D[k, j]
+    return out
 
-    ``dual``: of the transposed operators and a wrench y instead.
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def inverse_tangent_slope(d: Array, y: Array, dual: bool) -> Array:
+    """Derivative (6,6) over d of the even part of ``T(d)^-1 y`` for a twist y (6,).
+
+    ``dual``: of the transposed operator and a wrench y instead. With the odd part, the
+    derivative of ``T(+-d)^-1 y`` is this plus or minus half ``bracket_by_twist(y, dual)``.
     """
     a2, a2_slope, a4, a4_slope = _inverse_coefficients(d[3] ** 2 + d[4] ** 2 + d[5] ** 2)
-    A = ad(d).T.copy() if dual else ad(d)
+    A = ad(d)
+    if dual:
+        A = A.T.copy()
     y1 = apply(A, y)
     y2 = apply(A, y1)
     y3 = apply(A, y2)
     y4 = apply(A, y3)
-    B = bracket_by_twist(y, dual)
-    D2 = multiply(A, B) + bracket_by_twist(y1, dual)
-    D3 = multiply(A, D2) + bracket_by_twist(y2, dual)
-    D4 = multiply(A, D3) + bracket_by_twist(y3, dual)
-    ahead = np.empty((6, 6))
-    behind = np.empty((6, 6))
+    D2 = _next_slope(A, bracket_by_twist(y, dual), y1, dual)
+    D4 = _next_slope(A, _next_slope(A, D2, y2, dual), y3, dual)
     for i in range(6):
         change = 2.0 * (a2_slope * y2[i] + a4_slope * y4[i])
         for j in range(6):
-            even = a2 * D2[i, j] + a4 * D4[i, j]
-            if j >= 3:
-                even += change * d[j]
-            ahead[i, j] = 0.5 * B[i, j] + even
-            behind[i, j] = -0.5 * B[i, j] + even
-    return ahead, behind
+            D2[i, j] = a2 * D2[i, j] + a4 * D4[i, j]
+        for j in range(3, 6):
+            D2[i, j] += change * d[j]
+    return D2

@@ -17,8 +17,9 @@ from .frames import (
     apply_transposed,
     bracket_by_twist,
     hat,
-    multiply,
-    multiply_transposed,
+    multiply3,
+    multiply6,
+    multiply6_transposed,
 )
 
 
@@ -56,8 +57,8 @@ def node_balance(
         r[:3] -= weight[i, 0] * down + force
         r[3:] -= apply(hat(moment), down) + torque
         residual[i] = r
-        gyroscopic = multiply_transposed(bracket, M) + bracket_by_twist(momentum, True)
-        S = multiply(M, acceleration_tangent[i]) - multiply(gyroscopic, velocity_tangent[i])
+        gyroscopic = multiply6_transposed(bracket, M) + bracket_by_twist(momentum, True)
+        S = multiply6(M, acceleration_tangent[i]) - multiply6(gyroscopic, velocity_tangent[i])
         S[:3, 3:] -= hat(weight[i, 0] * down + force)
-        S[3:, 3:] -= multiply(hat(moment), hat(down)) + hat(torque)
+        S[3:, 3:] -= multiply3(hat(moment), hat(down)) + hat(torque)
         tangent[i] = S

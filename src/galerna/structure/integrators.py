@@ -18,7 +18,7 @@ from numba import njit
 from galerna.contract import Array
 from galerna.errors import ConvergenceError, InputError
 
-from .frames import FAST, apply, exp_se3, inverse_tangents, multiply
+from .frames import FAST, apply, exp_se3, inverse_tangents, multiply3
 from .pairs import carried_on
 from .system import Balance, Forces, LoadFunction, State, System
 
@@ -86,7 +86,7 @@ def _place(
     for i in range(1, len(x)):
         turn, shift = exp_se3(increment[i])
         x[i] = x0[i] + apply(R0[i], shift)
-        R[i] = multiply(R0[i], turn)
+        R[i] = multiply3(R0[i], turn)
         ahead, _ = inverse_tangents(increment[i])
         inverse[i] = ahead
         for a in range(6):
@@ -127,7 +127,7 @@ def _polish(R: Array) -> None:
                 for k in range(3):
                     square[a, b] -= 0.5 * R[i, k, a] * R[i, k, b]
             square[a, a] += 1.5
-        R[i] = multiply(R[i], square)
+        R[i] = multiply3(R[i], square)
 
 
 @dataclass(eq=False)

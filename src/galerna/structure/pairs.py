@@ -22,11 +22,18 @@ from .frames import (
     adjoint,
     apply,
     apply_transposed,
-    inverse_tangent_slopes,
+    bracket_by_twist,
+    inverse_tangent_slope,
     inverse_tangents,
     log_se3,
-    multiply,
-    multiply_transposed,
+    multiply3,
+    multiply3_transposed,
+    multiply6,
+    multiply6_transposed,
+    multiply_6_6_12,
+    multiply_12_6_6_transposed,
+    multiply_12_6_12,
+    multiply_12_6_12_transposed,
 )
 
 Integers = NDArray[np.int64]
@@ -80,7 +87,7 @@ class PairAnswer:
 @njit(cache=True, error_model="numpy")
 def _placed(node: int, x: Array, R: Array, offset_x: Array, offset_R: Array) -> tuple[Array, Array]:
     """Position and rotation of a frame that is fixed to a node."""
-    return x[node] + apply(R[node], offset_x), multiply(R[node], offset_R)
+    return x[node] + apply(R[node], offset_x), multiply3(R[node], offset_R)
 
 
 @njit(cache=True, error_model="numpy")
@@ -124,7 +131,7 @@ def _answer_one(
     else:
         xa, Ra, xb, Rb = x[first], R[first], x[second], R[second]
         to_a = to_b = np.empty((0, 0))
-    d = log_se3(multiply_transposed(Ra, Rb), apply_transposed(Ra, xb - xa))
+    d = log_se3(multiply3_transposed(Ra, Rb), apply_transposed(Ra, xb - xa))
     ahead, behind = inverse_tangents(d)
     d_rate = apply(ahead, vb) - apply(behind, va)
     stress = preload + apply(stiffness, d - reference)
@@ -132,31 +139,32 @@ def _answer_one(
         stress += apply(damping, d_rate)
     if np.isnan(carried[0]):
         carried[:] = stress
-    slope_b, slope_a = inverse_tangent_slopes(d, carried, True)
+    slope = inverse_tangent_slope(d, carried, True)
+    half = 0.5 * bracket_by_twist(carried, True)
     P = np.empty((6, 12))
     G = np.empty((12, 6))
     if has_offset:
-        P[:, :6] = -multiply(behind, to_a)
-        P[:, 6:] = multiply(ahead, to_b)
-        G[:6] = -multiply_transposed(to_a, slope_a)
-        G[6:] = multiply_transposed(to_b, slope_b)
+        P[:, :6] = -multiply6(behind, to_a)
+        P[:, 6:] = multiply6(ahead, to_b)
+        G[:6] = -multiply6_transposed(to_a, slope - half)
+        G[6:] = multiply6_transposed(to_b, slope + half)
     else:
         P[:, :6] = -behind
         P[:, 6:] = ahead
-        G[:6] = -slope_a
-        G[6:] = slope_b
+        G[:6] = half - slope
+        G[6:] = slope + half
     law = stiffness
     if damped:
-        rate_b, _ = inverse_tangent_slopes(d, vb, False)
-        _, rate_a = inverse_tangent_slopes(d, va, False)
-        law = stiffness + multiply(damping, rate_b - rate_a)
-    G += multiply_transposed(P, law)
-    S = multiply(G, P)
+        by_motion = inverse_tangent_slope(d, vb - va, False)
+        by_motion += 0.5 * bracket_by_twist(va + vb, False)
+        law = stiffness + multiply6(damping, by_motion)
+    G += multiply_12_6_6_transposed(P, law)
+    S = multiply_12_6_12(G, P)
     if damped:
         moving = np.empty((6, 12))
-        moving[:, :6] = multiply(P[:, :6], velocity_tangent[first])
-        moving[:, 6:] = multiply(P[:, 6:], velocity_tangent[second])
-        S += multiply_transposed(P, multiply(damping, moving))
+        moving[:, :6] = multiply6(P[:, :6], velocity_tangent[first])
+        moving[:, 6:] = multiply6(P[:, 6:], velocity_tangent[second])
+        S += multiply_12_6_12_transposed(P, multiply_6_6_12(damping, moving))
     motion[:] = d
     rate[:] = d_rate
     wrench[:] = stress
