@@ -47,8 +47,8 @@ class Structure(Part, Stateful, Protocol):
 
     ``motions`` holds one motion for every load model: the accepted one between
     steps, the trial one between ``predict`` and ``accept``. ``balance`` corrects the
-    trial with the loads on it and says whether it had converged; ``reject`` returns
-    to the accepted motion.
+    trial with the loads on it, or says that they are in balance and leaves it as it is;
+    ``reject`` returns to the accepted motion.
     """
 
     motions: tuple[Motion, ...]
