@@ -161,7 +161,8 @@ def test_loads_are_pure_and_repeat_to_the_bit(nrel):
     assert np.array_equal(first.moment, again.moment)
     assert all(np.array_equal(before[k], v) for k, v in model.state().items())
     model.loads(1.1, other)
-    model.end_step(1.1, motion)  # commits this motion, whatever was asked last
+    model.loads(1.1, motion)
+    model.end_step(1.1, motion)  # commits the last loads, whatever was asked before
     committed = model.state()
     model.restore(before)
     model.begin_step(1.0, 0.1, motion)

@@ -85,8 +85,7 @@ class BodyDrag:
         return loads
 
     def end_step(self, time: float, motion: Motion) -> None:
-        """Keep the loads of the accepted motion for the record."""
-        self.loads(time, motion)
+        """Keep the drag of the last ``loads`` for the record."""
         self._shown[:] = self._trial
 
     def record(self) -> Mapping[str, float | Array]:

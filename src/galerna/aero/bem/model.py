@@ -87,39 +87,41 @@ class BladeElementMomentum:
         self._strips = np.zeros((strips, s.STRIP_COLUMNS))
         self._totals = np.zeros(r.ROOT_MOMENTS + 2 * blades)
         self._shown = self._strips.copy(), self._totals.copy()
-        self._seen = np.full((sum(map(len, self.stations)), r.SEEN_COLUMNS), np.nan)
 
     def begin_step(self, time: float, dt: float, motion: Motion) -> None:
         """Prepare a trial of ``dt`` s; the first one starts from the long-lasting flow."""
-        self._seen[0, 0] = np.nan
         if not self._started:
             self._before = self._long_lasting(time, motion)
         self._dt = dt
 
     def loads(self, time: float, motion: Motion) -> Loads:
         """Forces and moments on all stations; the hub's and the tower's are zero."""
-        loads = self._evaluate(time, motion)
-        r.remember(
+        loads = Loads.zero(len(motion.position))
+        s.aerodynamic_centers(motion.position, motion.rotation, self._shape, self._points)
+        r.rotor_loads(
+            self._rotor,
+            self._points,
             motion.position,
             motion.rotation,
             motion.velocity,
             motion.angular_velocity,
-            time,
-            self._seen,
+            self._wind(time, motion),
+            self._shape,
+            self._table,
+            self._stall,
+            self._spanwise,
+            self._before,
+            self._dt,
+            self._after,
+            self._strips,
+            self._totals,
+            loads.force,
+            loads.moment,
         )
         return loads
 
     def end_step(self, time: float, motion: Motion) -> None:
-        """Commit the memories of the step that ends with this motion."""
-        if not r.same(
-            motion.position,
-            motion.rotation,
-            motion.velocity,
-            motion.angular_velocity,
-            time,
-            self._seen,
-        ):
-            self._evaluate(time, motion)
+        """Commit the memories of the last ``loads``."""
         if not self._whole_circle:
             angles = self._strips[:, s.ANGLE_OF_ATTACK].reshape(-1, len(self.sections))
             self.sections.check_angles(angles)
@@ -127,7 +129,6 @@ class BladeElementMomentum:
         self._before = self._memory
         self._started, self._dt = True, 0.0
         self._shown[0][:], self._shown[1][:] = self._strips, self._totals
-        self._seen[0, 0] = np.nan
 
     def record(self) -> Mapping[str, float | Array]:
         """The channels of the accepted step."""
@@ -142,7 +143,6 @@ class BladeElementMomentum:
         self._memory[:] = state["memory"]
         self._before, self._started = self._memory, bool(state["started"])
         self._dt = 0.0 if self._started else -1.0
-        self._seen[0, 0] = np.nan
 
     def _long_lasting(self, time: float, motion: Motion) -> Array:
         """Memories (m,16) of a flow that has for ever been as it is now."""
@@ -150,7 +150,7 @@ class BladeElementMomentum:
         self._before, self._dt = self._memory.copy(), -1.0
         feedback = self._rotor.spanwise_filter == r.FILTER_FEEDBACK
         for _ in range(FEEDBACK_PASSES if feedback else 1):
-            self._evaluate(time, motion)
+            self.loads(time, motion)
             self._before[:] = self._after
         started, self._before, self._dt = self._before, before, dt
         return started
@@ -178,31 +178,6 @@ class BladeElementMomentum:
                 time,
             )
         return velocity
-
-    def _evaluate(self, time: float, motion: Motion) -> Loads:
-        loads = Loads.zero(len(motion.position))
-        s.aerodynamic_centers(motion.position, motion.rotation, self._shape, self._points)
-        r.rotor_loads(
-            self._rotor,
-            self._points,
-            motion.position,
-            motion.rotation,
-            motion.velocity,
-            motion.angular_velocity,
-            self._wind(time, motion),
-            self._shape,
-            self._table,
-            self._stall,
-            self._spanwise,
-            self._before,
-            self._dt,
-            self._after,
-            self._strips,
-            self._totals,
-            loads.force,
-            loads.moment,
-        )
-        return loads
 
 
 def rotor_sections(turbine: Turbine, options: BemOptions) -> BladeSections:

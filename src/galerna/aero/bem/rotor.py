@@ -36,7 +36,6 @@ THRUST, TORQUE = 5, 6  #: N, N m
 ROTOR_SPEED = 7  #: rad/s
 ROOT_MOMENTS = 8  #: in-plane and out-of-plane moment of each blade at its root, N m
 
-SEEN_COLUMNS = 19  #: of a frame: position, rotation, velocity, angular velocity, time
 
 FILTER_OFF, FILTER_LOADS, FILTER_FEEDBACK = 0, 1, 2
 NO_SKEW, PITT_PETERS, VORTEX_CYLINDER = 0, 1, 2
@@ -349,32 +348,3 @@ def _total(
         totals[ROOT_MOMENTS + 2 * blade] = dot(at_root, about)
         totals[ROOT_MOMENTS + 2 * blade + 1] = dot(at_root, across)
     totals[THRUST], totals[TORQUE] = thrust, torque
-
-
-@njit(cache=True)
-def remember(position, rotation, velocity, angular_velocity, time, seen) -> None:  # type: ignore[no-untyped-def]
-    """Copy a motion of n frames and its time into ``seen`` (n,19)."""
-    for i in range(seen.shape[0]):
-        seen[i, 0:3], seen[i, 3:6], seen[i, 6:9] = position[i], velocity[i], angular_velocity[i]
-        for k in range(3):
-            seen[i, 9 + 3 * k : 12 + 3 * k] = rotation[i, k]
-        seen[i, 18] = time
-
-
-@njit(cache=True)
-def same(position, rotation, velocity, angular_velocity, time, seen) -> bool:  # type: ignore[no-untyped-def]
-    """Whether a motion and its time are, to the bit, those of ``remember``."""
-    for i in range(seen.shape[0]):
-        if seen[i, 18] != time:
-            return False
-        for k in range(3):
-            if (
-                seen[i, k] != position[i, k]
-                or seen[i, 3 + k] != velocity[i, k]
-                or seen[i, 6 + k] != angular_velocity[i, k]
-            ):
-                return False
-            for j in range(3):
-                if seen[i, 9 + 3 * k + j] != rotation[i, k, j]:
-                    return False
-    return True
