@@ -69,6 +69,12 @@ def test_the_schema_refuses_what_a_case_refuses():
         jsonschema.validate(values, case_schema())
 
 
+def test_a_folder_of_its_name_does_not_hide_a_built_in_case(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "demo").mkdir()
+    assert load("demo").case.turbine == "nrel5mw"
+
+
 def test_copied_examples_run_where_they_are(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     shutil.copy(examples.case_path("yawed"), tmp_path / "mine.yaml")

@@ -62,12 +62,12 @@ def load(case: str | Path | Mapping[str, Any] | Case) -> LoadedCase:
         document = Document("case", text, values)
         return LoadedCase(_validate(document), document, Path.cwd())
     path = Path(case)
-    if not path.exists() and str(case) in examples.case_names():
+    if path.is_file():
+        return _from_document(read_document(path), path.resolve().parent)
+    if str(case) in examples.case_names():
         return _from_document(read_document(examples.case_path(str(case))), examples.folder())
-    if not path.is_file():
-        hint = did_you_mean(str(case), examples.case_names())
-        raise InputError(str(case), "is neither a case file nor a built-in example", hint)
-    return _from_document(read_document(path), path.resolve().parent)
+    hint = did_you_mean(str(case), examples.case_names())
+    raise InputError(str(case), "is neither a case file nor a built-in example", hint)
 
 
 def parse(text: str, name: str = "case.yaml", folder: str | Path = ".") -> LoadedCase:
