@@ -51,7 +51,13 @@ def wilson_walker(a, loss):
     return 4.0 * loss * (a * (1.0 - a) if a <= 0.2 else 0.04 + 0.6 * a)
 
 
-CURVES = {"buhl": buhl, "glauert": glauert, "wilson_walker": wilson_walker}
+def madsen(a, loss):
+    """C_T of an induction, by inverting the polynomial."""
+    real = [x.real for x in np.roots([0.0883, 0.0586, 0.2460, -a]) if abs(x.imag) < 1e-9]
+    return loss * max(real)
+
+
+CURVES = {"madsen": madsen, "buhl": buhl, "glauert": glauert, "wilson_walker": wilson_walker}
 
 
 @pytest.mark.parametrize("name", CURVES)

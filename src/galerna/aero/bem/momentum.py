@@ -28,7 +28,8 @@ from galerna.aero.sections import section_coefficients
 from galerna.contract import Array
 
 FASTMATH = {"reassoc", "contract", "arcp", "nsz", "afn"}
-HIGH_THRUST = {"buhl": 0, "glauert": 1, "wilson_walker": 2}
+HIGH_THRUST = {"buhl": 0, "glauert": 1, "wilson_walker": 2, "madsen": 3}
+MADSEN = (0.0883, 0.0586, 0.2460)  #: of C_T^3, C_T^2 and C_T
 LOWEST_LOSS = 1e-3  #: keeps the balance finite at the very tip and root
 STANDSTILL = 1e-12  #: of U_n / W; what is below counts as no answer
 SLOWEST = 1e-6  #: m/s; a normal velocity below this counts as this one
@@ -76,6 +77,27 @@ def prandtl_loss(exponent: float, sine: float) -> float:
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
+def _madsen_slowness(load: float, sine: float) -> float:
+    """U_n / W where 1 - a = W sin(phi) / U_n and C_T / F = 4 load (W / U_n)^2.
+
+    Newton's method from above on a function of W / U_n that is convex for a positive load.
+    """
+    if load <= 0.0:  # a propeller: momentum theory
+        return (sine * sine + load) / sine if sine > 0.0 else -1.0
+    a_3, a_2, a_1 = MADSEN
+    ratio = (1.0 + 2.0 * abs(sine) / sqrt(load)) / sqrt(load)
+    for _ in range(60):
+        thrust = 4.0 * load * ratio * ratio
+        value = ((a_3 * thrust + a_2) * thrust + a_1) * thrust + sine * ratio - 1.0
+        slope = ((3.0 * a_3 * thrust + 2.0 * a_2) * thrust + a_1) * 2.0 * thrust / ratio + sine
+        step = value / slope
+        ratio -= step
+        if abs(step) < 1e-13 * ratio:
+            break
+    return 1.0 / ratio
+
+
+@njit(cache=True, error_model="numpy", fastmath=FASTMATH)
 def slowness(load: float, loss: float, sine: float, high_thrust: int) -> float:
     """U_n / W from the thrust balance at an inflow angle; not positive where there is none.
 
@@ -83,7 +105,10 @@ def slowness(load: float, loss: float, sine: float, high_thrust: int) -> float:
     Wilson and Walker) it is momentum theory, W sin(phi) = U_n / (1 + kappa). Beyond, the
     empirical thrust: Buhl (2005), NREL/TP-500-36834; Glauert's parabola times F; or the
     tangent from a = 0.2 of Wilson and Walker (1984). Each is solved for 1 - a in closed form.
+    Madsen et al. (2020), Wind Energ. Sci. 5, 1-27, have one polynomial a(C_T / F) for all.
     """
+    if high_thrust == 3:
+        return _madsen_slowness(load, sine)
     square = sine * sine
     critical = 0.2 if high_thrust == 2 else 0.4
     if sine > 0.0 and load * (1.0 - critical) <= critical * square:

@@ -22,10 +22,11 @@ class BemOptions(BaseModel):
     )
     tip_loss: bool = Field(default=True, description="Prandtl's tip loss.")
     root_loss: bool = Field(default=True, description="Prandtl's loss at the blade root.")
-    high_thrust: Literal["buhl", "glauert", "wilson_walker"] = Field(
+    high_thrust: Literal["buhl", "glauert", "wilson_walker", "madsen"] = Field(
         default="buhl",
         description="Empirical thrust of the turbulent wake state: Buhl (2005), Glauert's "
-        "parabola times the loss factor, or Wilson and Walker's tangent (1984).",
+        "parabola times the loss factor, Wilson and Walker's tangent (1984), or the polynomial "
+        "of Madsen et al. (2020), HAWC2's.",
     )
     induction: bool = Field(
         default=True, description="Induced velocities; off is pure blade element."
