@@ -130,8 +130,6 @@ def _place(
     body: Array,
     arms: Array,
     orientation: Array,
-    bodies: Array,
-    axes: Array,
     vectors: Array,
     rotation: Array,
 ) -> None:
@@ -139,6 +137,8 @@ def _place(
 
     ``vectors`` (5,n,3) stacks the rows of a body for every station, ``rotation`` (n,3,3) the axes.
     """
+    count = BLADE + len(offsets) - 1 - PITCH
+    bodies, axes = np.empty((count, 5, 3)), np.empty((count, 3, 3))
     _place_bodies(time, knots, offsets, geometry, bodies, axes)
     arm, spin, bend, swing = np.empty(3), np.empty(3), np.empty(3), np.empty(3)
     for i in range(len(body)):
@@ -213,10 +213,6 @@ class PrescribedMotion:
         self._knots = np.vstack(tables)
         self._offsets = np.cumsum([0, *(len(table) for table in tables)])
         self._geometry = _geometry(turbine, operation.azimuth)
-        self._bodies, self._axes = (
-            np.zeros((BLADE + blades, 5, 3)),
-            np.zeros((BLADE + blades, 3, 3)),
-        )
         located = [(s, *_locate(turbine, s)) for group in stations for s in group]
         self._body = np.repeat([b for _, b, _, _ in located], [len(s) for s, *_ in located])
         self._arms = np.concatenate([arms for _, _, arms, _ in located])
@@ -244,8 +240,6 @@ class PrescribedMotion:
             self._body,
             self._arms,
             self._orientation,
-            self._bodies,
-            self._axes,
             self._vectors,
             self._rotation,
         )
