@@ -126,7 +126,7 @@ def test_a_dictionary_is_a_case_too():
 
 
 def test_a_dictionary_has_no_lines_to_name():
-    with pytest.raises(InputError, match="^case: turbin: unknown key"):
+    with pytest.raises(InputError, match=r"^case: turbin: unknown key"):
         load({**parse(GOOD).document.values, "turbin": "x"})
 
 

@@ -116,7 +116,8 @@ class LoadModel(Protocol):
     trial; it changes nothing that ``state`` returns, and calling it again
     replaces the trial. ``loads`` is asked at t_n+1, may be asked many times, and
     depends only on the committed state, the trial and its arguments. ``end_step``
-    commits, and gets the time and the motion of the last ``loads``. ``record`` gives the channels of the accepted step.
+    commits, and gets the time and the motion of the last ``loads``. ``record``
+    gives the channels of the accepted step.
     """
 
     @property
