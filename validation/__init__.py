@@ -7,7 +7,7 @@ from importlib import import_module
 
 from .framework import Case
 
-MODULES = ("corrections", "turbulence")
+MODULES = ("bem", "phase_vi", "corrections", "turbulence")
 
 
 def cases() -> Sequence[Case]:

@@ -15,7 +15,7 @@ from galerna.contract import Array
 from galerna.kinematics import PrescribedMotion, PrescribedOperation
 from galerna.signals import Signal
 from galerna.turbine.model import Turbine
-from galerna.units import DEG, RPM
+from galerna.units import AIR_DENSITY, DEG, RPM
 
 DATA = Path(__file__).parent / "data"
 STEPS = 48  #: per turn
@@ -60,11 +60,11 @@ def turning(
     *,
     yaw_deg: float = 0.0,
     turns: int = 4,
+    air_density: float = AIR_DENSITY,
 ) -> dict[str, Array]:
     """Channels over the last of some turns of the rigid machine in uniform wind, and azimuth."""
-    model = BladeElementMomentum(
-        turbine, UniformWind(np.array([wind_speed, 0.0, 0.0])), options=options
-    )
+    wind = UniformWind(np.array([wind_speed, 0.0, 0.0]))
+    model = BladeElementMomentum(turbine, wind, air_density=air_density, options=options)
     blades = turbine.number_of_blades
     operation = PrescribedOperation(
         Signal.constant(rotor_speed_rpm * RPM),
