@@ -123,6 +123,12 @@ def test_check_says_what_would_run(case, capsys):
     assert "ready to run" in printed
 
 
+def test_check_finds_what_only_the_built_machine_can_tell(case, capsys):
+    case.write_text(CASE + "outputs: {channels: [rotor_trust]}\n")
+    assert galerna("check", case) == 2
+    assert "case.yaml:7: outputs.channels[0]" in capsys.readouterr().err
+
+
 def test_interrupting_leaves_a_result(case):
     """Ctrl-C: exit code 130, no traceback, a readable result."""
     arguments = ["run", str(case), "--duration", "100000"]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -13,7 +14,7 @@ from galerna.aero.bem.model import BladeElementMomentum
 from galerna.aero.body_drag import BodyDrag
 from galerna.case import LoadedCase, Series, parse
 from galerna.contract import Array, Channel, LoadModel
-from galerna.errors import InputError
+from galerna.errors import InputError, did_you_mean
 from galerna.inflow.build import BuiltInflow, build
 from galerna.inflow.sizing import RotorExtent
 from galerna.kinematics import PrescribedMotion, PrescribedOperation
@@ -30,13 +31,14 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Machine:
-    """A case come to life: what it simulates, in what wind, how it is run."""
+    """A case come to life: what it simulates, in what wind, how it is run, what is recorded."""
 
     case: LoadedCase
     turbine: Turbine
     wind: BuiltInflow
     operation: PrescribedOperation
     simulation: Simulation
+    channels: tuple[Channel, ...]
 
     def describe(self) -> Iterator[tuple[str, str]]:
         """What was built, in pairs of heading and text."""
@@ -50,6 +52,7 @@ class Machine:
         yield "operation", f"{start}{' at the start' if len(speed) + len(pitch) > 2 else ''}"
         yield "loads", ", ".join(simulation.load_models)
         steps = round(case.duration_s / case.time_step_s)
+        yield "records", f"{len(self.channels)} of {len(simulation.channels)} channels"
         yield "time", f"{case.duration_s:g} s in {steps} steps of {case.time_step_s:g} s"
 
 
@@ -71,7 +74,8 @@ def build_machine(case: LoadedCase) -> Machine:
         simulation = Simulation(
             structure, models, settings.time_step_s, probes={"wind": HubWindProbe(wind.field)}
         )
-    return Machine(case, turbine, wind, operation, simulation)
+    channels = _chosen_channels(case, simulation)
+    return Machine(case, turbine, wind, operation, simulation, channels)
 
 
 def load_turbine(case: LoadedCase) -> Turbine:
@@ -147,6 +151,17 @@ def _signal(value: float | Series, unit: float) -> Signal:
     if isinstance(value, Series):
         return Signal(np.array(value.time_s), unit * np.array(value.values))
     return Signal.constant(unit * value)
+
+
+def _chosen_channels(case: LoadedCase, simulation: Simulation) -> tuple[Channel, ...]:
+    """The channels that the case's patterns name; InputError for a pattern that names none."""
+    patterns, available = case.case.outputs.channels, simulation.channels
+    for i, pattern in enumerate(patterns):
+        if not any(fnmatchcase(channel.name, pattern) for channel in available):
+            hint = did_you_mean(pattern, [channel.name for channel in available])
+            with case.blame("outputs", "channels", i):
+                raise InputError(repr(pattern), "no channel has this name", hint)
+    return tuple(c for c in available if any(fnmatchcase(c.name, p) for p in patterns))
 
 
 class HubWindProbe:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
-from fnmatch import fnmatchcase
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
@@ -12,8 +11,7 @@ from typing import TYPE_CHECKING, Any
 from galerna import __version__
 from galerna.case import Case, LoadedCase, load
 from galerna.cite import references
-from galerna.contract import Channel
-from galerna.errors import GalernaError, InputError, did_you_mean
+from galerna.errors import GalernaError
 from galerna.machine import Machine, build_machine
 from galerna.results.log import Layout
 from galerna.results.store import ResultFile, check_free
@@ -53,8 +51,7 @@ def simulate(
 ) -> xarray.Dataset:
     """Run a machine that is built, into a result file."""
     settings = machine.case.case
-    channels = _chosen_channels(machine)
-    layout = Layout(channels, machine.simulation.coordinates, _attributes(machine))
+    layout = Layout(machine.channels, machine.simulation.coordinates, _attributes(machine))
     result = ResultFile(output, layout, overwrite)
     recorder = Recorder(result, settings.record_every, settings.outputs.start_s)
     try:
@@ -76,18 +73,6 @@ class Recorder(Callback):
     def accepted(self, simulation: Simulation) -> None:
         if simulation.steps % self._every == 0 and simulation.time >= self._start:
             self._result.append(simulation.time, simulation.record())
-
-
-def _chosen_channels(machine: Machine) -> tuple[Channel, ...]:
-    """The channels that the case's patterns name; InputError for a pattern that names none."""
-    available = machine.simulation.channels
-    patterns = machine.case.case.outputs.channels
-    for i, pattern in enumerate(patterns):
-        if not any(fnmatchcase(channel.name, pattern) for channel in available):
-            hint = did_you_mean(pattern, [channel.name for channel in available])
-            with machine.case.blame("outputs", "channels", i):
-                raise InputError(repr(pattern), "no channel has this name", hint)
-    return tuple(c for c in available if any(fnmatchcase(c.name, p) for p in patterns))
 
 
 def _attributes(machine: Machine) -> dict[str, str | float]:
