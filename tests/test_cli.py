@@ -228,23 +228,6 @@ def test_the_printed_schema_is_json(capsys):
     assert json.loads(capsys.readouterr().out)["properties"]["turbine"]["type"] == "string"
 
 
-def test_progress_is_a_line_now_and_then_where_there_is_no_terminal(capsys):
-    from machines import Spring
-    from test_simulation import spinning
-
-    from galerna.progress import ProgressLine
-
-    class Eager(ProgressLine):
-        interval = 0.0
-
-    spinning(Spring()).run(1.0, [Eager()])
-    lines = capsys.readouterr().err.splitlines()
-    assert len(lines) == 9
-    assert "of 1.0 s" in lines[0]
-    assert "x real time" in lines[0]
-    assert "9.55 rpm" in lines[0]
-
-
 def test_every_option_that_is_cited_exists():
     from galerna.aero.bem.options import BemOptions
     from galerna.cite import AERODYNAMICS, TURBINES

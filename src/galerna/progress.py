@@ -52,6 +52,7 @@ class ProgressBar(Pace):
     interval = 0.2
 
     def start(self, simulation: Simulation, end: float) -> None:
+        from rich.console import Console
         from rich.progress import BarColumn, Progress, TextColumn
 
         super().start(simulation, end)
@@ -59,6 +60,7 @@ class ProgressBar(Pace):
             TextColumn("{task.completed:7.1f} of {task.total:.1f} s"),
             BarColumn(bar_width=24),
             TextColumn("{task.description}"),
+            console=Console(stderr=True),
             transient=True,
         )
         self._task = self._progress.add_task("compiling", total=end)
