@@ -99,6 +99,16 @@ def test_the_inflow_shows_the_rotor_and_both_slices():
     assert left > right, "looking downwind, y points to the left"
 
 
+def test_both_slices_of_a_uniform_wind_have_one_colour():
+    class Uniform:
+        def velocity(self, points, time):
+            return np.tile([8.0 + 1e-12 * time, 0.0, 0.0], (len(points), 1))
+
+    figure = inflow_figure(Uniform(), RotorCircle(90.0, 63.0), 10.0)
+    for ax in figure.axes[:2]:
+        assert ax.collections[0].get_clim() == pytest.approx((7.5, 8.5))
+
+
 def test_curves_and_surfaces_draw(tmp_path):
     wind = np.linspace(4.0, 25.0, 8)
 

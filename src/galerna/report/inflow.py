@@ -44,8 +44,7 @@ def inflow_figure(
     with galerna_style():
         figure, axes = new_figure(1, 2, (10.0, 4.2), width_ratios=[1.0, 1.6])
         limits = {
-            "vmin": min(section.min(), line.min()),
-            "vmax": max(section.max(), line.max()),
+            **_colour_limits(section, line),
             "cmap": WIND_COLOURS,
             "shading": "gouraud",
         }
@@ -62,6 +61,13 @@ def inflow_figure(
         figure.colorbar(mesh, ax=axes[0], label="Wind speed along x [m/s]", fraction=0.03)
         figure.suptitle(f"Inflow: {name}" if name else "Inflow")
     return figure
+
+
+def _colour_limits(*slices: Array) -> dict[str, float]:
+    """The same colours for the same speed in all slices; half a m/s around a uniform wind."""
+    low, high = min(s.min() for s in slices), max(s.max() for s in slices)
+    room = max(0.5 - 0.5 * (high - low), 0.0)
+    return {"vmin": float(low - room), "vmax": float(high + room)}
 
 
 def _cross_section(wind: Inflow, rotor: RotorCircle, time: float) -> Array:
