@@ -7,7 +7,7 @@ from importlib import import_module
 
 from .framework import Benchmark
 
-MODULES = ("turbulence",)
+MODULES = ("bem", "turbulence", "structure")
 
 
 def benchmarks() -> Sequence[Benchmark]:

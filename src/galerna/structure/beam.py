@@ -154,7 +154,7 @@ def _stiffness(
 def _end_masses(
     ends: Ends, at: Array, axes: Array, density: Array, ds: Array, fraction: Array
 ) -> list[tuple[Array, Array]]:
-    """Mass matrix (6,6) and first moment along the axis (3,) of an element at its two ends.
+    """Mass matrix (6,6) and first moment (3,) of the levers of an element at its two ends.
 
     A section's mass is shared by Hermite's cubics: the value's go to the end as they are,
     the slope's as a lever along the chord; what the axis bends off the chord adds to it.
@@ -172,11 +172,11 @@ def _end_masses(
         for i in range(len(ds)):
             turn = np.kron(np.eye(2), R.T @ axes[i])
             local = turn @ density[i] @ turn.T
-            along = R.T @ (slope[i] * chord)
+            lever = R.T @ (slope[i] * chord + value[i] * off[i])
             E = np.zeros((6, 6))
-            E[:3, 3:] = -hat(along + value[i] * (R.T @ off[i]))
+            E[:3, 3:] = -hat(lever)
             M += ds[i] * (value[i] * local + local @ E + E.T @ local)
-            first += ds[i] * local[0, 0] * along
+            first += ds[i] * local[0, 0] * lever
         out.append((M, first))
     return out
 

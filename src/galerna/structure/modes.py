@@ -54,12 +54,11 @@ def linearise(
     system: System,
     state: State,
     forces: Forces | None = None,
-    turning: bool = False,
 ) -> Linear:
-    """Linear equations about a state: static, or ``turning`` steadily as a whole."""
+    """Linear equations about a state at rest, or whose body twists are constant in time."""
     forces = forces or Forces.none(len(system))
     still, one = system.still(), np.tile(np.eye(6), (len(system), 1, 1))
-    spin = spin_tangent(state) if turning else still
+    spin = spin_tangent(state)
     solver = SparseSolver(system.pairs, len(system))
 
     def matrix(velocity_tangent: Array, acceleration_tangent: Array) -> csc_matrix:
@@ -81,7 +80,6 @@ def natural_modes(
     state: State,
     count: int = 10,
     forces: Forces | None = None,
-    turning: bool = False,
     about_hz: float = 0.0,
 ) -> Modes:
     """The ``count`` modes whose frequencies are nearest to ``about_hz``.
@@ -89,7 +87,7 @@ def natural_modes(
     ``state`` should be an equilibrium, with the loads ``forces`` held constant. Rigid motions
     appear at 0 Hz. Source: shift and invert of the first-order pencil (Arnoldi).
     """
-    linear = linearise(system, state, forces, turning)
+    linear = linearise(system, state, forces)
     size = linear.stiffness.shape[0]
     count = min(count, linear.motions // 2)
     if count < 1:
