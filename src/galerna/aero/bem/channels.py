@@ -87,7 +87,7 @@ def _ratio(induced: float, undisturbed: float) -> float:
 
 
 def record(rotor: r.Rotor, strips: Array, totals: Array) -> Mapping[str, float | Array]:
-    """Every channel's value from the strip table (m,28) and the totals of one evaluation."""
+    """Every channel's value from the strip table (m,30) and the totals of one evaluation."""
     blades = int(rotor.momentum.blades)
     along = np.empty((len(STRIP_CHANNELS), len(strips)))
     _fill(strips, along)

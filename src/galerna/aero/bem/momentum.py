@@ -36,7 +36,7 @@ SLOWEST = 1e-6  #: m/s; a normal velocity below this counts as this one
 TOLERANCE = 1e-10  #: of the residual, which is of order 1
 NARROWEST = 1e-14  #: rad, of a bracket
 PATIENCE = 8  #: evaluations of false position alone
-FIRST_STEP = 0.01  #: rad, width of the first bracket around the guess
+FIRST_STEP, LARGEST_STEP = 1e-7, 0.1  #: rad, bounds of the first bracket around the guess
 
 
 Strip = tuple[float, float, float, float, float, float]
@@ -69,10 +69,12 @@ class Momentum(NamedTuple):
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
 def prandtl_loss(exponent: float, sine: float) -> float:
-    """Prandtl's factor F = 2/pi arccos(exp(-exponent / |sin(phi)|)).
+    """Prandtl's factor F = 2/pi arccos(exp(-exponent / |sin(phi)|)), 1 to within 1e-8.
 
     ``exponent`` is B/2 (R - r)/r at the tip and B/2 (r - R_root)/R_root at the root.
     """
+    if exponent > 18.0 * abs(sine):
+        return 1.0
     return 2.0 / pi * acos(exp(-exponent / max(abs(sine), 1e-9)))
 
 
@@ -196,7 +198,8 @@ def solve_strip(
     value, slow, swirl, loss = balance(
         at, table, station, pitch, normal, tangential, strip, switches
     )
-    step = FIRST_STEP if value > 0.0 else -FIRST_STEP
+    step = min(max(2.0 * abs(value), FIRST_STEP), LARGEST_STEP)  # the slope is of order 1
+    step = step if value > 0.0 else -step
     other, other_value, evaluations = at, value, 1
     while value * other_value > 0.0 and low < at < high:
         other, other_value = at, value
@@ -206,6 +209,8 @@ def solve_strip(
         )
         step *= 4.0
         evaluations += 1
+    if at in (low, high):
+        value = 1.0 if at == low else -1.0  # in exact arithmetic
     end = evaluations + PATIENCE
     while abs(value) > TOLERANCE and abs(at - other) > NARROWEST:
         trial = at - value * (at - other) / (value - other_value)

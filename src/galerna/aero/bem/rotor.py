@@ -88,7 +88,7 @@ def rotor_loads(
     In: ``points`` and ``wind`` (m,3) at the aerodynamic centres, the frames, ``shape`` (m,7),
     ``table`` (n,k,5) and ``stall`` (n,9) of the n stations of a blade, ``spanwise`` (n,n), the
     strips' memories ``before`` (m,16) and the step ``dt`` s; a negative one means that the
-    present state has lasted for ever. Out: ``after`` (m,16), ``strips`` (m,28), ``totals`` (8 + 2B)
+    present state has lasted for ever. Out: ``after`` (m,16), ``strips`` (m,30), ``totals`` (8 + 2B)
     and the rows of ``force`` N and ``moment`` N m (.,3).
     """
     m = shape.shape[0]
@@ -243,7 +243,7 @@ def _section(
     along = strips[i, s.TANGENTIAL_WIND] + strips[i, s.INDUCED_SWIRL]
     strips[i, s.SPEED] = sqrt(across * across + along * along)
     strips[i, s.INFLOW_ANGLE] = atan2(across, along)
-    c, sn = cos(strips[i, s.PITCH]), sin(strips[i, s.PITCH])
+    c, sn = strips[i, s.PITCH_COSINE], strips[i, s.PITCH_SINE]
     to_suction, to_trailing = across * c - along * sn, across * sn + along * c
     torsion = 0.0
     if rotor.three_quarter_chord:
@@ -303,7 +303,9 @@ def _load(
     """Lump a strip's force and moment on its station's frame."""
     chord, weight = shape[i, s.CHORD], shape[i, s.WEIGHT]
     pressure = 0.5 * rotor.air_density * strips[i, s.SPEED] ** 2 * chord
-    c, sn = cos(strips[i, s.INFLOW_ANGLE]), sin(strips[i, s.INFLOW_ANGLE])
+    speed = max(strips[i, s.SPEED], 1e-9)
+    c = (strips[i, s.TANGENTIAL_WIND] + strips[i, s.INDUCED_SWIRL]) / speed
+    sn = (strips[i, s.NORMAL_WIND] - strips[i, s.INDUCED_NORMAL]) / speed
     normal = pressure * (strips[i, s.LIFT] * c + strips[i, s.DRAG] * sn)
     tangential = pressure * (strips[i, s.LIFT] * sn - strips[i, s.DRAG] * c)
     strips[i, s.NORMAL_FORCE], strips[i, s.TANGENTIAL_FORCE] = normal, tangential

@@ -43,7 +43,8 @@ INFLOW_ANGLE = 21  #: rad
 ANGLE_OF_ATTACK = 22  #: rad, at the point that the options name
 LIFT, DRAG, MOMENT = 23, 24, 25  #: coefficients
 NORMAL_FORCE, TANGENTIAL_FORCE = 26, 27  #: N/m along NORMAL and against TANGENT
-STRIP_COLUMNS = 28
+PITCH_COSINE, PITCH_SINE = 28, 29
+STRIP_COLUMNS = 30
 
 
 @njit(cache=True)
@@ -106,7 +107,8 @@ def place_strip(
     air = subtract(row(wind, i), motion)
     strips[i, RADIUS], strips[i, CONE] = radius, cone
     strips[i, RADIAL] = max(dot(outwards, span), 0.1)
-    strips[i, PITCH] = atan2(-dot(suction, tangent), dot(suction, normal))
+    strips[i, PITCH_COSINE], strips[i, PITCH_SINE] = dot(suction, normal), -dot(suction, tangent)
+    strips[i, PITCH] = atan2(strips[i, PITCH_SINE], strips[i, PITCH_COSINE])
     strips[i, NORMAL_WIND], strips[i, TANGENTIAL_WIND] = dot(air, normal), dot(air, tangent)
     strips[i, TURNING] = dot(turning, span)
     strips[i, TORSION] = dot(subtract(turning, rotor_turning), span)
