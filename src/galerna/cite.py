@@ -154,6 +154,31 @@ _MANN_BOX = Reference(
     "Probabilistic Engineering Mechanics 13(4), 269-282",
     "10.1016/S0266-8920(97)00036-2",
 )
+_FILTER = Reference(
+    "MunozSimon2020",
+    "A. Muñoz-Simón, A. Wynn, R. Palacios",
+    2020,
+    "Unsteady and three-dimensional aerodynamic effects on wind turbine rotor loads",
+    "AIAA SciTech Forum",
+    "10.2514/6.2020-0991",
+)
+_JONES = Reference(
+    "Jones1940",
+    "R. T. Jones",
+    1940,
+    "The unsteady lift of a wing of finite aspect ratio",
+    "NACA Report 681",
+    kind="techreport",
+)
+_MADSEN = Reference(
+    "Madsen2020",
+    "H. A. Madsen, T. J. Larsen, G. R. Pirrung, A. Li, F. Zahle",
+    2020,
+    "Implementation of the blade element momentum model on a polar grid and its aeroelastic "
+    "load impact",
+    "Wind Energy Science 5, 1-27",
+    "10.5194/wes-5-1-2020",
+)
 _VEERS = Reference(
     "Veers1988",
     "P. S. Veers",
@@ -221,16 +246,22 @@ AERODYNAMICS: dict[str, dict[object, tuple[Reference, ...]]] = {
     "model": {"bem": (_NING,)},
     "tip_loss": {True: (_PRANDTL,)},
     "root_loss": {True: (_PRANDTL,)},
-    "high_thrust": {"buhl": (_BUHL,), "glauert": (_HANSEN,), "wilson_walker": (_WILSON,)},
+    "high_thrust": {
+        "buhl": (_BUHL,),
+        "glauert": (_HANSEN,),
+        "wilson_walker": (_WILSON,),
+        "madsen": (_MADSEN,),
+    },
     "skewed_wake": {"pitt_peters": (_PITT_PETERS,), "vortex_cylinder": (_SKEWED_CYLINDER,)},
     "dynamic_inflow": {"oye": (_OYE,)},
     "unsteady_airfoil": {"beddoes_leishman": (_BEDDOES_LEISHMAN,)},
+    "indicial_response": {"jones": (_JONES,)},
+    "spanwise_filter": {"loads": (_FILTER,), "feedback": (_FILTER,)},
     "tower_influence": {True: (_POWLES,)},
     "rotational_augmentation": {"snel": (_SNEL,), "du_selig": (_DU_SELIG,)},
 }
 
 TURBULENCE = {"mann": (_MANN_TENSOR, _MANN_BOX), "kaimal": (_VEERS, _IEC)}
-UNSTEADY = {"dynamic_inflow", "unsteady_airfoil"}
 
 
 def references(case: Case) -> list[Reference]:
@@ -244,7 +275,11 @@ def _references(case: Case) -> Iterator[Reference]:
         yield from TURBULENCE.get(case.inflow.turbulence.kind, ())
     if case.inflow.gust is not None:
         yield _IEC
+    aerodynamics, unused = case.aerodynamics, set[str]()
+    if not aerodynamics.has_unsteady_airfoil:
+        unused |= {"unsteady_airfoil", "indicial_response"}
+    if not aerodynamics.has_dynamic_inflow:
+        unused |= {"dynamic_inflow"}
     for option, publications in AERODYNAMICS.items():
-        if case.aerodynamics.quasi_steady and option in UNSTEADY:
-            continue
-        yield from publications.get(getattr(case.aerodynamics, option), ())
+        if option not in unused:
+            yield from publications.get(getattr(aerodynamics, option), ())
