@@ -11,10 +11,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.sparse import csc_matrix
-from scipy.sparse.linalg import LinearOperator, eigs, splu
+from scipy.sparse.linalg import ArpackNoConvergence, LinearOperator, eigs, splu
 
 from galerna.contract import Array
-from galerna.errors import InputError
+from galerna.errors import ConvergenceError, InputError
 
 from .solvers import SparseSolver
 from .statics import spin_tangent
@@ -93,7 +93,7 @@ def natural_modes(
     if count < 1:
         raise InputError("modes", "the structure has too few frames for this many modes")
     shift = 2j * np.pi * about_hz + 0.05
-    values, vectors = _nearest(linear, shift, min(2 * count + 8, 2 * size - 2))
+    values, vectors = _nearest(linear, shift, min(2 * count + 4, 2 * size - 2))
     return _sorted_modes(system, linear, values, vectors, count, shift)
 
 
@@ -114,7 +114,11 @@ def _nearest(linear: Linear, shift: complex, number: int) -> tuple[Array, Array]
 
     operator = LinearOperator((2 * size, 2 * size), matvec=apply, dtype=complex)
     start = np.random.default_rng(0).normal(size=2 * size).astype(complex)
-    values, vectors = eigs(operator, k=number, which="LM", v0=start, tol=1e-12)
+    subspace = min(2 * size, max(3 * number, 80))
+    try:
+        values, vectors = eigs(operator, number, v0=start, ncv=subspace, tol=1e-11)
+    except ArpackNoConvergence as error:
+        raise ConvergenceError("modes", str(error), "ask for fewer modes") from error
     return shift + 1.0 / values, vectors[:size]
 
 
