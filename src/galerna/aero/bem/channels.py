@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import atan2
 
 import numpy as np
 from numba import njit
@@ -73,7 +74,7 @@ def _fill(strips: Array, out: Array) -> None:
     """Copy the strips' columns into ``out`` (channels, m) in the order of STRIP_CHANNELS."""
     for i in range(strips.shape[0]):
         strip = strips[i]
-        out[0, i], out[1, i] = strip[s.ANGLE_OF_ATTACK], strip[s.INFLOW_ANGLE]
+        out[0, i], out[1, i] = strip[s.ANGLE_OF_ATTACK], atan2(strip[s.ACROSS], strip[s.ALONG])
         out[2, i] = strip[s.SPEED]
         out[3, i], out[4, i], out[5, i] = strip[s.LIFT], strip[s.DRAG], strip[s.MOMENT]
         out[6, i], out[7, i] = strip[s.NORMAL_FORCE], strip[s.TANGENTIAL_FORCE]
@@ -87,7 +88,7 @@ def _ratio(induced: float, undisturbed: float) -> float:
 
 
 def record(rotor: r.Rotor, strips: Array, totals: Array) -> Mapping[str, float | Array]:
-    """Every channel's value from the strip table (m,30) and the totals of one evaluation."""
+    """Every channel's value from the strip table (m,31) and the totals of one evaluation."""
     blades = int(rotor.momentum.blades)
     along = np.empty((len(STRIP_CHANNELS), len(strips)))
     _fill(strips, along)

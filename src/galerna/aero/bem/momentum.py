@@ -73,9 +73,10 @@ def prandtl_loss(exponent: float, sine: float) -> float:
 
     ``exponent`` is B/2 (R - r)/r at the tip and B/2 (r - R_root)/R_root at the root.
     """
-    if exponent > 18.0 * abs(sine):
+    size = max(abs(sine), 1e-9)
+    if exponent > 18.0 * size:
         return 1.0
-    return 2.0 / pi * acos(exp(-exponent / max(abs(sine), 1e-9)))
+    return 2.0 / pi * acos(exp(-exponent / size))
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
@@ -201,7 +202,7 @@ def solve_strip(
     step = min(max(2.0 * abs(value), FIRST_STEP), LARGEST_STEP)  # the slope is of order 1
     step = step if value > 0.0 else -step
     other, other_value, evaluations = at, value, 1
-    while value * other_value > 0.0 and low < at < high:
+    while value * other_value > 0.0 and low < at < high and abs(value) > TOLERANCE:
         other, other_value = at, value
         at = min(max(at + step, low), high)
         value, slow, swirl, loss = balance(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from math import atan2, cos, pi, sin, sqrt
 from typing import NamedTuple
 
+import numpy as np
 from numba import njit
 
 from galerna.aero.bem import strips as s
@@ -88,7 +89,7 @@ def rotor_loads(
     In: ``points`` and ``wind`` (m,3) at the aerodynamic centres, the frames, ``shape`` (m,7),
     ``table`` (n,k,5) and ``stall`` (n,9) of the n stations of a blade, ``spanwise`` (n,n), the
     strips' memories ``before`` (m,16) and the step ``dt`` s; a negative one means that the
-    present state has lasted for ever. Out: ``after`` (m,16), ``strips`` (m,30), ``totals`` (8 + 2B)
+    present state has lasted for ever. Out: ``after`` (m,16), ``strips`` (m,31), ``totals`` (8 + 2B)
     and the rows of ``force`` N and ``moment`` N m (.,3).
     """
     m = shape.shape[0]
@@ -242,7 +243,7 @@ def _section(
     across = strips[i, s.NORMAL_WIND] - strips[i, s.INDUCED_NORMAL]
     along = strips[i, s.TANGENTIAL_WIND] + strips[i, s.INDUCED_SWIRL]
     strips[i, s.SPEED] = sqrt(across * across + along * along)
-    strips[i, s.INFLOW_ANGLE] = atan2(across, along)
+    strips[i, s.ACROSS], strips[i, s.ALONG] = across, along
     c, sn = strips[i, s.PITCH_COSINE], strips[i, s.PITCH_SINE]
     to_suction, to_trailing = across * c - along * sn, across * sn + along * c
     torsion = 0.0
@@ -281,19 +282,19 @@ def _section(
 def _filter_lift(rotor: Rotor, spanwise: Array, shape: Array, after: Array, strips: Array) -> None:
     """Let neighbouring sections of a blade share their circulation."""
     n = rotor.strips_per_blade
+    around, circulation = np.empty(n), np.empty(n)
     for first in range(0, strips.shape[0], n):
+        for j in range(n):
+            k = first + j
+            around[j] = max(strips[k, s.SPEED], CALM) * shape[k, s.CHORD]
+            circulation[j] = around[j] * strips[k, s.LIFT]  # twice
         for i in range(n):
-            circulation = 0.0  # twice
+            filtered = 0.0
             for j in range(n):
-                k = first + j
-                circulation += (
-                    spanwise[i, j] * strips[k, s.SPEED] * shape[k, s.CHORD] * strips[k, s.LIFT]
-                )
-            k = first + i
-            around = max(strips[k, s.SPEED], CALM) * shape[k, s.CHORD]
-            after[k, LIFT_SHIFT] = circulation / around - strips[k, s.LIFT]
-        for k in range(first, first + n):
-            strips[k, s.LIFT] += after[k, LIFT_SHIFT]
+                filtered += spanwise[i, j] * circulation[j]
+            shift = filtered / around[i] - strips[first + i, s.LIFT]
+            after[first + i, LIFT_SHIFT] = shift
+            strips[first + i, s.LIFT] += shift
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
@@ -304,8 +305,7 @@ def _load(
     chord, weight = shape[i, s.CHORD], shape[i, s.WEIGHT]
     pressure = 0.5 * rotor.air_density * strips[i, s.SPEED] ** 2 * chord
     speed = max(strips[i, s.SPEED], 1e-9)
-    c = (strips[i, s.TANGENTIAL_WIND] + strips[i, s.INDUCED_SWIRL]) / speed
-    sn = (strips[i, s.NORMAL_WIND] - strips[i, s.INDUCED_NORMAL]) / speed
+    c, sn = strips[i, s.ALONG] / speed, strips[i, s.ACROSS] / speed
     normal = pressure * (strips[i, s.LIFT] * c + strips[i, s.DRAG] * sn)
     tangential = pressure * (strips[i, s.LIFT] * sn - strips[i, s.DRAG] * c)
     strips[i, s.NORMAL_FORCE], strips[i, s.TANGENTIAL_FORCE] = normal, tangential

@@ -39,12 +39,13 @@ OUTWARDS = 14  #: unit vector from the shaft axis to the strip
 LOSS = 17  #: Prandtl's factor
 INDUCED_NORMAL, INDUCED_SWIRL = 18, 19  #: induced velocity against the wind and swirl, m/s
 SPEED = 20  #: relative speed, m/s
-INFLOW_ANGLE = 21  #: rad
+ACROSS = 21  #: relative velocity along NORMAL, m/s
 ANGLE_OF_ATTACK = 22  #: rad, at the point that the options name
 LIFT, DRAG, MOMENT = 23, 24, 25  #: coefficients
 NORMAL_FORCE, TANGENTIAL_FORCE = 26, 27  #: N/m along NORMAL and against TANGENT
 PITCH_COSINE, PITCH_SINE = 28, 29
-STRIP_COLUMNS = 30
+ALONG = 30  #: relative velocity along TANGENT, m/s
+STRIP_COLUMNS = 31
 
 
 @njit(cache=True)
