@@ -19,7 +19,9 @@ from galerna.structure.modes import natural_modes
 from galerna.structure.statics import static_equilibrium
 from galerna.structure.system import Forces, State, System
 from galerna.structure.turbine import TurbineOptions, axis_curve, turbine_system
+from galerna.structure.whirl import whirl_modes
 from galerna.turbine.model import SectionProperties
+from galerna.units import RPM
 
 from .framework import Case, Check
 
@@ -325,6 +327,32 @@ def nrel_modes() -> Sequence[Check]:
     return checks
 
 
+HAWC = (
+    "DTU 10 MW, HAWCStab2 structural frequencies as shipped with lacbox (MIT licence), "
+    "dtu_10mw_structural.cmb, at 4 m/s (6 rpm) and 11.1 m/s (9.6 rpm)"
+)
+DTU_MODES = {  # rpm: frequencies in Hz as seen from the ground
+    6.0: (0.250929, 0.256377, 0.483535, 0.645481, 0.683133, 0.829324, 1.02974, 1.35676),
+    9.6: (0.2501, 0.2564, 0.4481, 0.6675, 0.7550, 0.7798, 1.0954, 1.3373),
+}
+DTU_NAMES = (
+    "tower side-side", "tower fore-aft", "flap backward", "flap collective", "flap forward",
+    "edge backward", "edge forward", "second flap backward",
+)  # fmt: skip
+
+
+def dtu_whirl() -> Sequence[Check]:
+    turbine, checks = turbines.load("dtu10mw"), []
+    for rpm, published in DTU_MODES.items():
+        found = whirl_modes(turbine, rpm * RPM, 12).modes.frequency
+        found = found[found > 0.1]
+        for name, value, reference in zip(DTU_NAMES, found, published, strict=False):
+            tolerance = 0.005 if name.startswith("tower") else 0.03
+            checks.append(Check(f"{name} at {rpm:g} rpm", float(value), reference, HAWC, tolerance,
+                                "Hz", True))  # fmt: skip
+    return checks
+
+
 CASES = [
     Case("structure-roll-up", "structure", "A beam rolled into a circle", roll_up, 5),
     Case("structure-bend", "structure", "The 45-degree bend under 600 lb", bend_45_degrees, 3,
@@ -346,6 +374,11 @@ CASES = [
          "sections' compliance, an independent figure that galerna meets within 0.1 %."),
     Case("structure-rotating-beam", "structure", "Frequencies of a rotating beam", rotating_beam, 6,
          "20 elements, clamped at the axis of rotation."),
+    Case("structure-dtu-whirl", "structure", "Natural frequencies of the turning DTU 10 MW",
+         dtu_whirl, 8,
+         "Multiblade coordinates, rotor free, no weight and no wind. HAWCStab2's blades stand in "
+         "the wind's steady deflection, galerna's do not: blades are judged within 3 %, the tower "
+         "within 0.5 %."),
     Case("structure-nrel-modes", "structure", "Natural frequencies of the parked NREL 5 MW",
          nrel_modes, 8,
          "Judged against ADAMS, whose flexible beams are nearest in kind; FAST's prescribed shapes "

@@ -15,6 +15,7 @@ from galerna.structure.modes import natural_modes
 from galerna.structure.statics import static_equilibrium
 from galerna.structure.system import spin_twists
 from galerna.structure.turbine import TurbineOptions, turbine_system
+from galerna.structure.whirl import whirl_modes
 from galerna.turbine.geometry import blade_frames
 from galerna.units import DEG
 
@@ -130,3 +131,19 @@ def test_a_flexible_part_without_data_is_refused(nrel):
 def test_an_unknown_rotor_is_refused(nrel):
     with pytest.raises(InputError, match="rotor"):
         turbine_system(nrel, TurbineOptions(**FEW, rotor="spinning"))
+
+
+def test_multiblade_coordinates_change_nothing_at_standstill(nrel):
+    options = TurbineOptions(**FEW, gravity=(0.0, 0.0, 0.0))
+    whirling = whirl_modes(nrel, 0.0, 8, options)
+    plain = natural_modes(whirling.model.system, whirling.state, 8)
+    assert whirling.modes.frequency[2:] == pytest.approx(plain.frequency[2:], rel=1e-6)
+
+
+def test_turning_splits_the_asymmetric_modes_by_twice_the_speed(nrel):
+    """On a rigid tower the flapwise whirls are the blade's own frequency minus and plus 1P."""
+    speed = 1.0
+    options = TurbineOptions(blade_elements=6, tower_elements=0, flexible_yaw=False)
+    found = 2 * np.pi * whirl_modes(nrel, speed, 9, options).modes.frequency
+    backward, _, forward = found[found > 0.1][:3]
+    assert forward - backward == pytest.approx(2 * speed, rel=1e-3)

@@ -87,7 +87,11 @@ def natural_modes(
     ``state`` should be an equilibrium, with the loads ``forces`` held constant. Rigid motions
     appear at 0 Hz. Source: shift and invert of the first-order pencil (Arnoldi).
     """
-    linear = linearise(system, state, forces)
+    return modes_of(system, linearise(system, state, forces), count, about_hz)
+
+
+def modes_of(system: System, linear: Linear, count: int, about_hz: float = 0.0) -> Modes:
+    """Modes of linear equations, see ``natural_modes``."""
     size = linear.stiffness.shape[0]
     count = min(count, linear.motions // 2)
     if count < 1:

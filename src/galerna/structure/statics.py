@@ -10,10 +10,11 @@ from galerna.contract import Array
 from galerna.errors import ConvergenceError
 
 from .frames import ad, exp_se3
-from .pairs import carried_on
+from .pairs import Integers, carried_on
 from .system import Balance, Forces, LoadFunction, State, System, with_spin
 
 Correction = tuple[Array, Array, Array]
+Spin = tuple[Array, Array] | tuple[Array, Array, Integers]
 
 
 def static_equilibrium(
@@ -22,13 +23,13 @@ def static_equilibrium(
     loads: Forces | LoadFunction | None = None,
     steps: int = 1,
     tolerance: float = 1e-9,
-    spin: tuple[Array, Array] | None = None,
+    spin: Spin | None = None,
 ) -> State:
     """The state at which all forces balance, reached in ``steps`` equal load steps.
 
     ``loads`` are forces or a function of the state. ``spin`` is a point (3,) m and an
-    angular velocity (3,) rad/s: the machine turns steadily as a whole and its inertia takes
-    part, which is found in axes that turn with it. ``tolerance`` is the residual over the
+    angular velocity (3,) rad/s with which the machine turns steadily, as a whole or in the
+    nodes that are given third; its inertia takes part. ``tolerance`` is the residual over the
     largest force at a frame. Raises ConvergenceError if even small load steps fail.
     """
     state = system.initial_state() if state is None else state.copy()
@@ -51,7 +52,7 @@ def _newton(
     state: State,
     loads: Forces | LoadFunction | None,
     factor: float,
-    spin: tuple[Array, Array] | None,
+    spin: Spin | None,
     tolerance: float,
 ) -> State:
     """Newton's method at one load factor, with the wrenches carried along as in ``carried_on``.
@@ -90,7 +91,7 @@ def _searched(
     state: State,
     loads: Forces | LoadFunction | None,
     factor: float,
-    spin: tuple[Array, Array] | None,
+    spin: Spin | None,
     correction: Correction,
     size: float,
     tolerance: float,
@@ -109,13 +110,13 @@ def _balance(
     state: State,
     loads: Forces | LoadFunction | None,
     factor: float,
-    spin: tuple[Array, Array] | None,
+    spin: Spin | None,
     carried: Array | None = None,
 ) -> tuple[Balance, State]:
     """The residual with weight, loads and the square of the speed at ``factor``."""
     velocity_tangent = system.still()
     if spin is not None:
-        state = with_spin(state, spin[0], np.sqrt(factor) * np.asarray(spin[1]))
+        state = with_spin(state, spin[0], np.sqrt(factor) * np.asarray(spin[1]), *spin[2:])
         velocity_tangent = spin_tangent(state)
     forces = Forces.none(len(system)) if loads is None else loads
     if callable(forces):

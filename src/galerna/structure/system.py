@@ -281,13 +281,15 @@ def spin_twists(state: State, point: Array, angular_velocity: Array) -> Array:
     return twists
 
 
-def with_spin(state: State, point: Array, angular_velocity: Array) -> State:
-    """The state turning steadily as a whole; in body axes its twists are constant."""
-    return replace(
-        state,
-        velocity=spin_twists(state, point, angular_velocity),
-        acceleration=np.zeros_like(state.acceleration),
-    )
+def with_spin(
+    state: State, point: Array, angular_velocity: Array, nodes: Integers | None = None
+) -> State:
+    """The state turning steadily, as a whole or in some nodes; in body axes twists are constant."""
+    velocity = spin_twists(state, point, angular_velocity)
+    if nodes is not None:
+        resting = np.setdiff1d(np.arange(len(velocity)), nodes)
+        velocity[resting] = 0.0
+    return replace(state, velocity=velocity, acceleration=np.zeros_like(state.acceleration))
 
 
 def _add_load_tangents(
