@@ -7,7 +7,7 @@ from importlib import import_module
 
 from .framework import Case
 
-MODULES = ("bem", "phase_vi", "corrections", "turbulence", "structure", "multibody")
+MODULES = ("bem", "phase_vi", "corrections", "turbulence", "structure", "vibration", "multibody")
 
 
 def cases() -> Sequence[Case]:

@@ -77,7 +77,9 @@ def test_the_root_carries_the_load():
     forces = Forces.none(len(system))
     forces.dead[tip, 1] = 1e3
     state = static_equilibrium(system, loads=forces)
-    root = -system.pair_answer(state).node_wrench[0, :6]
+    root = system.internal_loads(state, "beam")[0]
+    with pytest.raises(InputError, match="beam"):
+        system.internal_loads(state, "beem")
     x = state.position[tip]
     assert np.allclose(root[:3], [0, 1e3, 0], atol=1e-4)
     assert np.allclose(root[3:], np.cross(x, [0, 1e3, 0]), atol=1e-3)

@@ -10,17 +10,8 @@ from numba import njit
 
 from galerna.contract import Array
 
-from .frames import (
-    FAST,
-    ad,
-    apply,
-    apply_transposed,
-    bracket_by_twist,
-    hat,
-    multiply3,
-    multiply6,
-    multiply6_transposed,
-)
+from .blocks import FAST, apply, apply_transposed, multiply3, multiply6, multiply6_transposed
+from .frames import ad, bracket_by_twist, hat
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)

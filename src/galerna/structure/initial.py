@@ -40,6 +40,14 @@ def with_initial_accelerations(system: System, state: State, forces: Forces | No
     return rest
 
 
+def velocity_violation(system: System, state: State) -> float:
+    """Largest rate m/s or rad/s at which the state leaves its constraints."""
+    rates, _ = _along_the_flow(system, state, 1e-4)
+    held = rates[: len(system.pairs)][system.pairs.locked]
+    others = rates[len(system.pairs) :, 0]
+    return float(np.abs(np.concatenate([held, others])).max(initial=0.0))
+
+
 def _along_the_flow(system: System, state: State, step: float) -> tuple[Array, Array]:
     """First and second rate of all constrained motions while the body twists stay constant."""
     values = []

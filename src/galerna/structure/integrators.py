@@ -18,7 +18,8 @@ from numba import njit
 from galerna.contract import Array
 from galerna.errors import ConvergenceError, InputError
 
-from .frames import FAST, apply, exp_se3, inverse_tangents, multiply3
+from .blocks import FAST, apply, multiply3
+from .frames import exp_se3, inverse_tangents
 from .pairs import carried_on
 from .system import Balance, Forces, LoadFunction, State, System
 

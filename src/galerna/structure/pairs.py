@@ -17,15 +17,10 @@ from numpy.typing import NDArray
 
 from galerna.contract import Array
 
-from .frames import (
+from .blocks import (
     FAST,
-    adjoint,
     apply,
     apply_transposed,
-    bracket_by_twist,
-    inverse_tangent_slope,
-    inverse_tangents,
-    log_se3,
     multiply3,
     multiply3_transposed,
     multiply6,
@@ -35,6 +30,7 @@ from .frames import (
     multiply_12_6_12,
     multiply_12_6_12_transposed,
 )
+from .frames import adjoint, bracket_by_twist, inverse_tangent_slope, inverse_tangents, log_se3
 
 Integers = NDArray[np.int64]
 Flags = NDArray[np.bool_]

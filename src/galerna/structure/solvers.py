@@ -20,7 +20,7 @@ from scipy.sparse.linalg import splu
 from galerna.contract import Array
 from galerna.errors import ConvergenceError
 
-from .frames import FAST
+from .blocks import FAST
 from .pairs import Integers, PairAnswer, Pairs
 
 

@@ -15,7 +15,7 @@ from functools import cached_property
 import numpy as np
 from numba import njit
 
-from galerna.contract import Array, Motion
+from galerna.contract import Array, Loads, Motion
 from galerna.errors import InputError, did_you_mean
 
 from .constraints import Constraint, constraint_rows
@@ -76,6 +76,19 @@ class Forces:
     @classmethod
     def none(cls, n: int) -> Forces:
         return cls(np.zeros((n, 6)), np.zeros((n, 6)))
+
+    @classmethod
+    def of(cls, n: int, nodes: Integers, loads: Loads) -> Forces:
+        """A load model's answer on the frames ``nodes`` (k,), each of which may repeat."""
+        forces = cls.none(n)
+        np.add.at(forces.dead, nodes, np.hstack([loads.force, loads.moment]))
+        for name in ("stiffness", "damping", "mass"):
+            blocks = getattr(loads, name)
+            if blocks is not None:
+                total = np.zeros((n, 6, 6))
+                np.add.at(total, nodes, blocks)
+                setattr(forces, name, total)
+        return forces
 
     def scaled(self, factor: float) -> Forces:
         """The loads times a factor."""
@@ -255,6 +268,19 @@ class System:
             self.pairs, state.multiplier, state.position, state.rotation, state.velocity,
             self.still(), empty_answer(len(self.pairs)),
         )  # fmt: skip
+
+    def internal_loads(self, state: State, beam: str) -> Array:
+        """Force N and moment N m (n+1,6) that the outer part of a beam puts on the inner one.
+
+        At the nodes of the beam, in their section axes; the first row holds the root bending
+        moments of a beam that is joined to its support.
+        """
+        elements = [e for e, name in enumerate(self.pair_names) if name.startswith(beam + ":")]
+        if not elements:
+            beams = {name.partition(":")[0] for name in self.pair_names if ":" in name}
+            raise InputError(beam, "no such beam", did_you_mean(beam, beams))
+        wrench = self.pair_answer(state).node_wrench[elements]
+        return np.vstack([-wrench[:, :6], wrench[-1:, 6:]])
 
     def pair_motion(self, state: State) -> Array:
         """Relative motions (m,6) of the pairs at a state."""
