@@ -67,6 +67,7 @@ STRIP_CHANNELS = (
     _strip("tangential_induction", "1", "tangential induction", "TnInd", "-"),
 )
 CHANNELS = ROTOR_CHANNELS + BLADE_CHANNELS + STRIP_CHANNELS
+STRIP_NAMES = tuple(channel.name for channel in STRIP_CHANNELS)
 
 
 @njit(cache=True, error_model="numpy")
@@ -89,13 +90,10 @@ def _ratio(induced: float, undisturbed: float) -> float:
 
 def record(rotor: r.Rotor, strips: Array, totals: Array) -> Mapping[str, float | Array]:
     """Every channel's value from the strip table (m,31) and the totals of one evaluation."""
-    blades = int(rotor.momentum.blades)
-    along = np.empty((len(STRIP_CHANNELS), len(strips)))
-    _fill(strips, along)
-    values: dict[str, float | Array] = {
-        channel.name: row.reshape(blades, -1)
-        for channel, row in zip(STRIP_CHANNELS, along, strict=True)
-    }
+    blades = rotor.blades
+    along = np.empty((len(STRIP_NAMES), blades, rotor.strips_per_blade))
+    _fill(strips, along.reshape(len(along), -1))
+    values: dict[str, float | Array] = dict(zip(STRIP_NAMES, along, strict=True))
     root = totals[r.ROOT_MOMENTS :].reshape(blades, 2).copy()
     values["aerodynamic_root_in_plane_moment"] = root[:, 0]
     values["aerodynamic_root_out_of_plane_moment"] = root[:, 1]
