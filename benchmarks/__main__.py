@@ -75,7 +75,7 @@ def main() -> int:
     table = Table(*COLUMNS, title=machine())
     for record in rows:
         table.add_row(*cells(record))
-    Console().print(table)
+    Console(width=None if sys.stdout.isatty() else 160).print(table)
     if options.json:
         options.json.write_text(json.dumps(rows, indent=1) + "\n")
     if options.page:
