@@ -296,7 +296,7 @@ def _listed(checks: Iterator[Check]) -> Sequence[Check]:
 
 CASES = (
     Case(
-        "bem_openfast_spanwise",
+        "bem-openfast-spanwise",
         "rotor",
         "NREL 5 MW, straight rigid blades: spanwise loads against AeroDyn",
         lambda: _listed(openfast_spanwise()),
@@ -305,7 +305,7 @@ CASES = (
         "and AeroDyn's first and last node sit on the hub and the tip.",
     ),
     Case(
-        "bem_openfast_full",
+        "bem-openfast-full",
         "rotor",
         "NREL 5 MW with tilt and cone: spanwise loads against AeroDyn",
         lambda: _listed(openfast_full()),
@@ -313,7 +313,7 @@ CASES = (
         "Shown, not judged: AeroDyn's figures are at one azimuth, galerna's are means over it.",
     ),
     Case(
-        "bem_nrel5mw_steady",
+        "bem-nrel5mw-steady",
         "rotor",
         "NREL 5 MW, steady operation from 5 to 25 m/s",
         lambda: _listed(nrel_steady_curve()),
@@ -325,16 +325,16 @@ CASES = (
         "trimmed to the table's aerodynamic power.",
     ),
     Case(
-        "bem_nrel5mw_steady_polars",
+        "bem-nrel5mw-steady-polars",
         "rotor",
         "NREL 5 MW, steady operation, with the polars as published",
         lambda: _listed(nrel_steady_curve_of_galerna()),
         60.0,
         "Shown, not judged: galerna's own sections against the same table. What differs is the "
-        "steady limit of the table's unsteady section model; see bem_nrel5mw_steady.",
+        "steady limit of the table's unsteady section model; see bem-nrel5mw-steady.",
     ),
     Case(
-        "bem_nrel5mw_tables",
+        "bem-nrel5mw-tables",
         "rotor",
         "NREL 5 MW: where its published steady tables disagree",
         lambda: _listed(nrel_other_tables()),
@@ -343,7 +343,7 @@ CASES = (
         "DISCON control, and an older table.",
     ),
     Case(
-        "bem_dtu10mw_steady",
+        "bem-dtu10mw-steady",
         "rotor",
         "DTU 10 MW, steady power and thrust",
         lambda: _listed(dtu_steady_curve()),
@@ -355,15 +355,15 @@ CASES = (
         "thrust, for polars blended by other rules.",
     ),
     Case(
-        "bem_dtu10mw_rotor_speeds",
+        "bem-dtu10mw-rotor-speeds",
         "rotor",
         "DTU 10 MW at 8 m/s over the rotor speed",
         lambda: _listed(dtu_rotor_speeds()),
         2.0,
-        "With cone and prebend; settings as in bem_dtu10mw_steady.",
+        "With cone and prebend; settings as in bem-dtu10mw-steady.",
     ),
     Case(
-        "bem_yaw_azimuths",
+        "bem-yaw-azimuths",
         "rotor",
         "Yaw error 30 deg: where loads are largest and smallest",
         lambda: _listed(yawed_rotor()),
@@ -372,7 +372,7 @@ CASES = (
         "Near means 30 deg of azimuth.",
     ),
     Case(
-        "bem_yaw_losses",
+        "bem-yaw-losses",
         "rotor",
         "Yaw error 30 deg: mean thrust and power",
         lambda: _listed(yaw_losses()),

@@ -168,7 +168,7 @@ def _turn(row: dict[str, str], augmentation: str) -> tuple[float, dict[str, Arra
 
 CASES = (
     Case(
-        "phase_vi_torque",
+        "phase-vi-torque",
         "rotor",
         "NREL Phase VI: shaft torque from 7 to 25 m/s",
         lambda: tuple(torque()),
@@ -179,7 +179,7 @@ CASES = (
         "models of stall delay.",
     ),
     Case(
-        "phase_vi_sections",
+        "phase-vi-sections",
         "rotor",
         "NREL Phase VI: section coefficients",
         lambda: tuple(sections()),
