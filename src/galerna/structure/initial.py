@@ -28,11 +28,11 @@ def with_initial_accelerations(system: System, state: State, forces: Forces | No
     balance = system.balance(rest, forces or Forces.none(n), system.still(), identity)
     balance.nodes = system.mass.copy()
     balance.pairs.tangent[:] = 0.0
-    balance.pairs.motion[:] = accelerations[: len(system.pairs)]
+    balance.pairs.motion[:] = accelerations[: len(system.pairs.ends)]
     if balance.rows is not None:
         kept = balance.rows
         balance.rows = replace(
-            kept, residual=accelerations[len(system.pairs) :, 0], jacobian=kept.direction,
+            kept, residual=accelerations[len(system.pairs.ends) :, 0], jacobian=kept.direction,
             tangent=0.0 * kept.tangent,
         )  # fmt: skip
     rate, rest.multiplier, rest.constraint_multiplier = system.solve(balance, system.mass_scale)
@@ -43,8 +43,8 @@ def with_initial_accelerations(system: System, state: State, forces: Forces | No
 def velocity_violation(system: System, state: State) -> float:
     """Largest rate m/s or rad/s at which the state leaves its constraints."""
     rates, _ = _along_the_flow(system, state, 1e-4)
-    held = rates[: len(system.pairs)][system.pairs.locked]
-    others = rates[len(system.pairs) :, 0]
+    held = rates[: len(system.pairs.ends)][system.pairs.locked]
+    others = rates[len(system.pairs.ends) :, 0]
     return float(np.abs(np.concatenate([held, others])).max(initial=0.0))
 
 
@@ -72,7 +72,7 @@ def _velocity_rows(system: System) -> NDArray[np.bool_]:
     """Rows of ``_constrained_motions`` that are constraints on velocities."""
     kinds = [not constraint.holonomic for constraint, _ in system.constraints]
     others = np.repeat(np.array(kinds, dtype=bool), system.constraint_sizes)
-    return np.concatenate([np.zeros(len(system.pairs), dtype=bool), others])
+    return np.concatenate([np.zeros(len(system.pairs.ends), dtype=bool), others])
 
 
 def _constrained_motions(system: System, state: State) -> Array:
@@ -87,7 +87,7 @@ def _constrained_motions(system: System, state: State) -> Array:
 
 
 def _check_velocities(system: System, state: State, rates: Array) -> None:
-    m = len(system.pairs)
+    m = len(system.pairs.ends)
     held = np.where(system.pairs.locked, np.abs(rates[:m]), 0.0)
     limit = 1e-5 * (1.0 + np.abs(state.velocity).max())
     if held.max(initial=0.0) > limit:

@@ -9,7 +9,7 @@ Source: Sonneville, Cardona and Bruls, Comput. Methods Appl. Mech. Eng. 268 (201
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -36,8 +36,7 @@ Integers = NDArray[np.int64]
 Flags = NDArray[np.bool_]
 
 
-@dataclass(eq=False, slots=True)
-class Pairs:
+class Pairs(NamedTuple):
     """All pairs of a system, m of them.
 
     ``ends`` (m,2) nodes, 0 the ground; ``offset_rotation`` (m,2,3,3) and
@@ -58,12 +57,8 @@ class Pairs:
     preload: Array
     locked: Flags
 
-    def __len__(self) -> int:
-        return len(self.ends)
 
-
-@dataclass(eq=False, slots=True)
-class PairAnswer:
+class PairAnswer(NamedTuple):
     """What the pairs give: relative motion, its rate and wrench (m,6), node wrenches and tangents.
 
     ``node_wrench`` (m,12) and ``tangent`` (m,12,12) belong to (A, B) in body axes,
@@ -80,124 +75,98 @@ class PairAnswer:
     carried: Array
 
 
-@njit(cache=True, error_model="numpy")
-def _placed(node: int, x: Array, R: Array, offset_x: Array, offset_R: Array) -> tuple[Array, Array]:
-    """Position and rotation of a frame that is fixed to a node."""
-    return x[node] + apply(R[node], offset_x), multiply3(R[node], offset_R)
-
-
-@njit(cache=True, error_model="numpy")
-def _to_offset(R: Array, x: Array) -> Array:
-    """The matrix (6,6) that carries a node's twist to a frame at R, x in its axes."""
-    return adjoint(R.T.copy(), -apply_transposed(R, x))
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _end(
+    pairs: Pairs, e: int, side: int, x: Array, R: Array, v: Array
+) -> tuple[Array, Array, Array, Array]:
+    """Position, rotation and twist of a pair's frame, and what carries its node's twist there."""
+    node = pairs.ends[e, side]
+    if not pairs.has_offset[e]:
+        return x[node], R[node], v[node], np.empty((0, 0))
+    arm, turn = pairs.offset_position[e, side], pairs.offset_rotation[e, side]
+    carry = adjoint(turn.T.copy(), -apply_transposed(turn, arm))
+    return x[node] + apply(R[node], arm), multiply3(R[node], turn), apply(carry, v[node]), carry
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _answer_one(
-    first: int,
-    second: int,
-    has_offset: bool,
-    offset_R: Array,
-    offset_x: Array,
-    reference: Array,
-    stiffness: Array,
-    damping: Array,
-    damped: bool,
-    preload: Array,
-    carried: Array,
-    x: Array,
-    R: Array,
-    v: Array,
-    velocity_tangent: Array,
-    motion: Array,
-    rate: Array,
-    wrench: Array,
-    node_wrench: Array,
-    direction: Array,
-    tangent: Array,
-) -> None:
-    """One pair; fills the last six arguments."""
-    va, vb = v[first], v[second]
-    if has_offset:
-        xa, Ra = _placed(first, x, R, offset_x[0], offset_R[0])
-        xb, Rb = _placed(second, x, R, offset_x[1], offset_R[1])
-        to_a = _to_offset(offset_R[0], offset_x[0])
-        to_b = _to_offset(offset_R[1], offset_x[1])
-        va, vb = apply(to_a, va), apply(to_b, vb)
-    else:
-        xa, Ra, xb, Rb = x[first], R[first], x[second], R[second]
-        to_a = to_b = np.empty((0, 0))
-    d = log_se3(multiply3_transposed(Ra, Rb), apply_transposed(Ra, xb - xa))
-    ahead, behind = inverse_tangents(d)
-    d_rate = apply(ahead, vb) - apply(behind, va)
-    stress = preload + apply(stiffness, d - reference)
-    if damped:
-        stress += apply(damping, d_rate)
-    if np.isnan(carried[0]):
-        carried[:] = stress
-    slope = inverse_tangent_slope(d, carried, True)
-    half = 0.5 * bracket_by_twist(carried, True)
+def _over_nodes(
+    ahead: Array, behind: Array, carry_a: Array, carry_b: Array, has_offset: bool
+) -> Array:
+    """The direction P (6,12) in the nodes' variations."""
     P = np.empty((6, 12))
-    G = np.empty((12, 6))
     if has_offset:
-        P[:, :6] = -multiply6(behind, to_a)
-        P[:, 6:] = multiply6(ahead, to_b)
-        G[:6] = -multiply6_transposed(to_a, slope - half)
-        G[6:] = multiply6_transposed(to_b, slope + half)
+        P[:, :6] = -multiply6(behind, carry_a)
+        P[:, 6:] = multiply6(ahead, carry_b)
     else:
         P[:, :6] = -behind
         P[:, 6:] = ahead
-        G[:6] = half - slope
-        G[6:] = slope + half
-    law = stiffness
-    if damped:
-        by_motion = inverse_tangent_slope(d, vb - va, False)
-        by_motion += 0.5 * bracket_by_twist(va + vb, False)
-        law = stiffness + multiply6(damping, by_motion)
-    G += multiply_12_6_6_transposed(P, law)
-    S = multiply_12_6_12(G, P)
-    if damped:
-        moving = np.empty((6, 12))
-        moving[:, :6] = multiply6(P[:, :6], velocity_tangent[first])
-        moving[:, 6:] = multiply6(P[:, 6:], velocity_tangent[second])
-        S += multiply_12_6_12_transposed(P, multiply_6_6_12(damping, moving))
-    motion[:] = d
-    rate[:] = d_rate
-    wrench[:] = stress
-    node_wrench[:] = apply_transposed(P, stress)
-    direction[:] = P
-    tangent[:] = S
+    return P
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _turning_of_wrench(
+    d: Array, wrench: Array, carry_a: Array, carry_b: Array, has_offset: bool
+) -> Array:
+    """Derivative (12,6) over d of the node wrenches ``P.T @ wrench`` at a constant wrench."""
+    even = inverse_tangent_slope(d, wrench, True)
+    odd = 0.5 * bracket_by_twist(wrench, True)
+    G = np.empty((12, 6))
+    if has_offset:
+        G[:6] = multiply6_transposed(carry_a, odd - even)
+        G[6:] = multiply6_transposed(carry_b, odd + even)
+    else:
+        G[:6] = odd - even
+        G[6:] = odd + even
+    return G
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _damping_tangent(
+    pairs: Pairs, e: int, d: Array, P: Array, va: Array, vb: Array, velocity_tangent: Array
+) -> tuple[Array, Array]:
+    """What damping adds to the law (6,6) over d, and the rest of its tangent (12,12)."""
+    by_motion = inverse_tangent_slope(d, vb - va, False)
+    by_motion += 0.5 * bracket_by_twist(va + vb, False)
+    moving = np.empty((6, 12))
+    moving[:, :6] = multiply6(P[:, :6], velocity_tangent[pairs.ends[e, 0]])
+    moving[:, 6:] = multiply6(P[:, 6:], velocity_tangent[pairs.ends[e, 1]])
+    damping = pairs.damping[e]
+    rest = multiply_12_6_12_transposed(P, multiply_6_6_12(damping, moving))
+    return multiply6(damping, by_motion), rest
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
 def _answer_all(
-    ends: Integers,
-    has_offset: Flags,
-    offset_R: Array,
-    offset_x: Array,
-    reference: Array,
-    stiffness: Array,
-    damping: Array,
-    damped: Flags,
-    preload: Array,
-    carried: Array,
-    x: Array,
-    R: Array,
-    v: Array,
-    velocity_tangent: Array,
-    motion: Array,
-    rate: Array,
-    wrench: Array,
-    node_wrench: Array,
-    direction: Array,
-    tangent: Array,
-) -> None:
-    for e in range(len(ends)):
-        _answer_one(
-            ends[e, 0], ends[e, 1], has_offset[e], offset_R[e], offset_x[e], reference[e],
-            stiffness[e], damping[e], damped[e], preload[e], carried[e], x, R, v, velocity_tangent,
-            motion[e], rate[e], wrench[e], node_wrench[e], direction[e], tangent[e],
-        )  # fmt: skip
+    pairs: Pairs, multiplier: Array, x: Array, R: Array, v: Array, velocity_tangent: Array,
+    out: PairAnswer,
+) -> None:  # fmt: skip
+    for e in range(len(pairs.ends)):
+        has_offset, damped = pairs.has_offset[e], pairs.damped[e]
+        xa, Ra, va, carry_a = _end(pairs, e, 0, x, R, v)
+        xb, Rb, vb, carry_b = _end(pairs, e, 1, x, R, v)
+        d = log_se3(multiply3_transposed(Ra, Rb), apply_transposed(Ra, xb - xa))
+        ahead, behind = inverse_tangents(d)
+        rate = apply(ahead, vb) - apply(behind, va)
+        wrench = (
+            pairs.preload[e] + multiplier[e] + apply(pairs.stiffness[e], d - pairs.reference[e])
+        )
+        if damped:
+            wrench += apply(pairs.damping[e], rate)
+        if np.isnan(out.carried[e, 0]):
+            out.carried[e] = wrench
+        P = _over_nodes(ahead, behind, carry_a, carry_b, has_offset)
+        G = _turning_of_wrench(d, out.carried[e], carry_a, carry_b, has_offset)
+        law = pairs.stiffness[e]
+        if damped:
+            more, rest = _damping_tangent(pairs, e, d, P, va, vb, velocity_tangent)
+            law = law + more
+        G += multiply_12_6_6_transposed(P, law)
+        out.tangent[e] = multiply_12_6_12(G, P)
+        if damped:
+            out.tangent[e] += rest
+        out.motion[e], out.rate[e], out.wrench[e] = d, rate, wrench
+        out.node_wrench[e] = apply_transposed(P, wrench)
+        out.direction[e] = P
 
 
 def empty_answer(m: int) -> PairAnswer:
@@ -226,12 +195,7 @@ def answer(
     ``carried`` (m,6), where given, replaces the pairs' own wrenches in the tangent.
     """
     room.carried[:] = np.nan if carried is None else carried
-    _answer_all(
-        pairs.ends, pairs.has_offset, pairs.offset_rotation, pairs.offset_position,
-        pairs.reference, pairs.stiffness, pairs.damping, pairs.damped,
-        pairs.preload + multiplier, room.carried, x, R, v, velocity_tangent,
-        room.motion, room.rate, room.wrench, room.node_wrench, room.direction, room.tangent,
-    )  # fmt: skip
+    _answer_all(pairs, multiplier, x, R, v, velocity_tangent, room)
     return room
 
 

@@ -145,7 +145,7 @@ class System:
 
     @cached_property
     def _room(self) -> PairAnswer:
-        return empty_answer(len(self.pairs))
+        return empty_answer(len(self.pairs.ends))
 
     @cached_property
     def constraint_sizes(self) -> list[int]:
@@ -158,7 +158,7 @@ class System:
 
     def initial_state(self) -> State:
         """The machine as it was described, at rest at time 0."""
-        n, m = len(self), len(self.pairs)
+        n, m = len(self), len(self.pairs.ends)
         rest = np.zeros((n, 6))
         multiplier, others = np.zeros((m, 6)), np.zeros(sum(self.constraint_sizes))
         x, R = self.position.copy(), self.rotation.copy()
@@ -266,7 +266,7 @@ class System:
         self.set_time(state.time)
         return answer(
             self.pairs, state.multiplier, state.position, state.rotation, state.velocity,
-            self.still(), empty_answer(len(self.pairs)),
+            self.still(), empty_answer(len(self.pairs.ends)),
         )  # fmt: skip
 
     def internal_loads(self, state: State, beam: str) -> Array:
