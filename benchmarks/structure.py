@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import os
+import subprocess
+import tempfile
 import time
 from collections.abc import Callable, Sequence
+from pathlib import Path
 from statistics import median
 
 import numpy as np
@@ -104,13 +108,40 @@ def turbine_step() -> Sequence[Figure]:
     return [*figures, Figure("cost a frame at 3 x 200 over that at 3 x 20", ratio, "-", 1.2)]
 
 
+def sharpy_step(elements: int, dt: float) -> float | None:
+    """CPU ms of SHARPy's structural solution for a step of the same pendulum, if it is there.
+
+    ``GALERNA_SHARPY`` names the Python interpreter that has SHARPy (PyPI ``ic-sharpy``).
+    """
+    interpreter = os.environ.get("GALERNA_SHARPY")
+    if not interpreter:
+        return None
+    script = Path(__file__).with_name("sharpy_pendulum.py")
+    with tempfile.TemporaryDirectory() as folder:
+        command = [interpreter, str(script), folder, str(elements), "10", str(dt)]
+        run = subprocess.run(command, capture_output=True, text=True, cwd=folder, check=False)
+    if run.returncode:
+        print(f"SHARPy did not run: {run.stderr.strip().splitlines()[-1:]}")
+        return None
+    return 1e3 * float(run.stdout.split()[-1])
+
+
 def pendulum_step() -> Sequence[Figure]:
     figures = []
     for dt in (1e-3, 5e-3):
+        peer = sharpy_step(20, dt) if dt == 1e-3 else None
         wall, assembly, solve, iterations = step_cost(*double_pendulum(20), dt, 200)
         name = f"flexible double pendulum, 2 x 20 elements, step {1e3 * dt:g} ms"
         figures += [
-            Figure(f"{name}: converged step", wall, "ms", 1.0),
+            Figure(
+                f"{name}: converged step",
+                wall,
+                "ms",
+                1.0,
+                False,
+                "SHARPy, 20 three-node elements" if peer else "",
+                peer,
+            ),
             Figure(f"{name}: assembly in it", assembly, "ms"),
             Figure(f"{name}: linear solve in it", solve, "ms"),
             Figure(f"{name}: iterations", iterations, "-"),
