@@ -184,6 +184,20 @@ def test_every_wind_speed_and_pitch_has_an_answer(
     assert abs(at) < 1e-9 or before * after <= 0.0
 
 
+@pytest.mark.parametrize("name", CURVES)
+@pytest.mark.parametrize("pitch", [0.0, 0.35])
+def test_thrust_has_no_jump_where_the_wind_turns(table, name, pitch):
+    """Without wind a turning strip is a propeller, whichever side the last breeze came from."""
+    switches = Momentum.of(BemOptions(high_thrust=name), 3)
+    induced = []
+    for mirror in (1.0, -1.0):
+        entry = strip(0.04, mirror=mirror)
+        answer = solve_strip(0.0, table, 12, pitch, mirror * 1e-4, 40.0, entry, switches)
+        induced.append(answer[1])
+    assert abs(induced[0]) > 1.0
+    assert induced[1] == pytest.approx(induced[0], abs=0.01)
+
+
 def test_answer_is_continuous_in_the_wind(table):
     """Induced velocity has no jump while the wind rises from nothing to a storm."""
     entry, guess, last = strip(0.04), 0.1, None

@@ -10,7 +10,7 @@ velocities,
 
 with U_n, U_t the velocities without the rotor, u_n = a U_n the induced velocity against the
 wind and u_t the swirl. The thrust curve is continued through a = 1, where the flow reverses,
-so W(phi) is one smooth positive branch, infinite at both ends of its interval: the residual
+so W(phi) is one continuous positive branch, infinite at both ends of its interval: the residual
 goes from plus to minus infinity between -pi/2 and 3 pi/2 for every U_t, zero and negative
 included, and a bracket of the root is known without a search. Divided by W it stays finite.
 Wind from behind is the same problem mirrored.
@@ -101,6 +101,22 @@ def _madsen_slowness(load: float, sine: float) -> float:
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
+def _turbulent_slowness(load: float, loss: float, sine: float, high_thrust: int) -> float:
+    """U_n / W from the empirical thrust of the turbulent wake state, for a positive load."""
+    square = sine * sine
+    if high_thrust == 2:
+        tangent, crossing = 0.6, 0.64  # 1 - 2 a and (1 - a)^2 at a = 0.2
+        return (tangent * sine + sqrt(tangent**2 * square + 4.0 * load * crossing)) / (
+            2.0 * crossing
+        )
+    loss = loss if high_thrust == 0 else 1.0
+    reversed_flow = sine < 0.0  # a > 1: on along the tangent
+    bend = (5.0 / 3.0 - loss) ** 2 if reversed_flow else loss * (loss - 4.0 / 3.0)
+    root = 2.0 * loss * load + bend * square
+    return sqrt(root) + (5.0 / 3.0 - loss) * sine if root > 0.0 else -1.0
+
+
+@njit(cache=True, error_model="numpy", fastmath=FASTMATH)
 def slowness(load: float, loss: float, sine: float, high_thrust: int) -> float:
     """U_n / W from the thrust balance at an inflow angle; not positive where there is none.
 
@@ -109,23 +125,20 @@ def slowness(load: float, loss: float, sine: float, high_thrust: int) -> float:
     empirical thrust: Buhl (2005), NREL/TP-500-36834; Glauert's parabola times F; or the
     tangent from a = 0.2 of Wilson and Walker (1984). Each is solved for 1 - a in closed form.
     Madsen et al. (2020), Wind Energ. Sci. 5, 1-27, have one polynomial a(C_T / F) for all.
+    Where the flow reverses, a > 1, the curves go on straight (Madsen's as it is) up to the
+    propeller brake, C_T = 4 F a (a - 1), which is momentum theory again.
     """
-    if high_thrust == 3:
-        return _madsen_slowness(load, sine)
     square = sine * sine
     critical = 0.2 if high_thrust == 2 else 0.4
-    if sine > 0.0 and load * (1.0 - critical) <= critical * square:
+    if high_thrust == 3:
+        slow = _madsen_slowness(load, sine)
+    elif sine > 0.0 and load * (1.0 - critical) <= critical * square:
         return (square + load) / sine
-    if load <= 0.0:
+    elif load <= 0.0:
         return -1.0
-    if high_thrust == 2:
-        tangent, crossing = 1.0 - 2.0 * critical, (1.0 - critical) ** 2
-        return (tangent * sine + sqrt(tangent**2 * square + 4.0 * load * crossing)) / (
-            2.0 * crossing
-        )
-    loss = loss if high_thrust == 0 else 1.0
-    root = 2.0 * loss * load - loss * (4.0 / 3.0 - loss) * square
-    return sqrt(root) + (5.0 / 3.0 - loss) * sine if root > 0.0 else -1.0
+    else:
+        slow = _turbulent_slowness(load, loss, sine, high_thrust)
+    return min(slow, (square - load) / sine) if sine < 0.0 else slow
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
