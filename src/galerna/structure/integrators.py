@@ -18,7 +18,7 @@ from numba import njit
 from galerna.contract import Array
 from galerna.errors import ConvergenceError, InputError
 
-from .blocks import FAST, apply, multiply3
+from .blocks import FAST, apply, multiply3, multiply3_transposed
 from .frames import exp_se3, inverse_tangents
 from .pairs import carried_on
 from .system import Balance, Forces, LoadFunction, State, System
@@ -77,6 +77,11 @@ class Tolerance:
     angular_velocity: float = 1e-8
     iterations: int = 20
 
+    @property
+    def absolute(self) -> Array:
+        """The absolute tolerances (4,) in m, rad, m/s and rad/s."""
+        return np.array([self.displacement, self.rotation, self.velocity, self.angular_velocity])
+
 
 @njit(cache=True, error_model="numpy")
 def _place(
@@ -98,11 +103,15 @@ def _place(
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
 def _correct(
-    variation: Array, inverse: Array, factors: Array, increment: Array, v: Array, v_rate: Array,
-    auxiliary: Array,
-) -> Array:  # fmt: skip
-    """Add Newton's variation to the trial; the largest changes (m, rad) and sizes so far."""
-    largest = np.zeros(8)
+    variation: Array, inverse: Array, factors: Array, absolute: Array, relative: float,
+    increment: Array, v: Array, v_rate: Array, auxiliary: Array,
+) -> float:  # fmt: skip
+    """Add Newton's variation to the trial; the change over its tolerance, the worst of kinds.
+
+    The kinds are m, rad, m/s and rad/s, each with its tolerance in ``absolute`` (4,) and
+    ``relative`` to the largest increment or velocity of its kind.
+    """
+    change_size, size = np.zeros(4), np.zeros(4)
     for i in range(1, len(variation)):
         change = apply(inverse[i], variation[i])
         for k in range(6):
@@ -111,24 +120,27 @@ def _correct(
             v_rate[i, k] += factors[1] * change[k]
             auxiliary[i, k] += factors[2] * change[k]
             kind = k // 3
-            largest[kind] = max(largest[kind], abs(change[k]))
-            largest[2 + kind] = max(largest[2 + kind], abs(increment[i, k]))
-            largest[4 + kind] = max(largest[4 + kind], factors[0] * abs(change[k]))
-            largest[6 + kind] = max(largest[6 + kind], abs(v[i, k]))
-    return largest
+            change_size[kind] = max(change_size[kind], abs(change[k]))
+            size[kind] = max(size[kind], abs(increment[i, k]))
+            size[2 + kind] = max(size[2 + kind], abs(v[i, k]))
+    change_size[2:] = factors[0] * change_size[:2]
+    return np.max(change_size / (absolute + relative * size))
 
 
-@njit(cache=True)
-def _polish(R: Array) -> None:
-    """Take rounding out of rotations: one step towards the nearest orthogonal matrix."""
-    for i in range(1, len(R)):
-        square = np.zeros((3, 3))
+@njit(cache=True, error_model="numpy")
+def _settle(increment: Array, x0: Array, R0: Array, x: Array, R: Array) -> None:
+    """Frames at the accepted increments, rounding taken out of the rotations.
+
+    One step of Newton's iteration towards the nearest orthogonal matrix is enough.
+    """
+    for i in range(1, len(x)):
+        turn, shift = exp_se3(increment[i])
+        x[i] = x0[i] + apply(R0[i], shift)
+        turned = multiply3(R0[i], turn)
+        correction = -0.5 * multiply3_transposed(turned, turned)
         for a in range(3):
-            for b in range(3):
-                for k in range(3):
-                    square[a, b] -= 0.5 * R[i, k, a] * R[i, k, b]
-            square[a, a] += 1.5
-        R[i] = multiply3(R[i], square)
+            correction[a, a] += 1.5
+        R[i] = multiply3(turned, correction)
 
 
 @dataclass(eq=False)
@@ -168,7 +180,7 @@ class Integrator:
         factors = np.array([s.gamma / (s.beta * dt), per_acceleration, 1.0 / (s.beta * dt**2)])
         scale = per_acceleration * self.system.mass_scale + self.system.stiffness_scale
         inverse, velocity_tangent, acceleration_tangent = np.zeros((3, n, 6, 6))
-        none = Forces.none(n)
+        absolute, none = self.tolerance.absolute, Forces.none(n)
         before, carried = np.inf, None
         for iteration in range(1, self.tolerance.iterations + 1):
             self.iterations = iteration
@@ -186,16 +198,16 @@ class Integrator:
             carried = carried_on(self.system.pairs, balance.pairs, variation, multiplier)
             trial.multiplier += multiplier
             trial.constraint_multiplier += constraint
-            largest = _correct(
-                variation, inverse, factors, increment, trial.velocity, trial.acceleration,
-                trial.auxiliary,
+            error = _correct(
+                variation, inverse, factors, absolute, self.tolerance.relative,
+                increment, trial.velocity, trial.acceleration, trial.auxiliary,
             )  # fmt: skip
-            error = self._error(largest)
             if not np.isfinite(error):
                 break
             contraction = min(error / before, 0.9) if np.isfinite(before) else 1.0
             if error * contraction <= 1.0:
-                return self._accept(state, trial, increment)
+                _settle(increment, state.position, state.rotation, trial.position, trial.rotation)
+                return trial
             before = error
         raise self._failure(balance, trial.time)
 
@@ -208,22 +220,6 @@ class Integrator:
         trial.velocity = state.velocity + dt * ((1.0 - s.gamma) * old + s.gamma * trial.auxiliary)
         increment = dt * state.velocity + dt**2 * ((0.5 - s.beta) * old + s.beta * trial.auxiliary)
         return trial, increment
-
-    def _error(self, largest: Array) -> float:
-        """The last correction over its tolerance: the worst of m, rad, m/s and rad/s."""
-        t = self.tolerance
-        absolute = np.array([t.displacement, t.rotation, t.velocity, t.angular_velocity])
-        change, size = largest[[0, 1, 4, 5]], largest[[2, 3, 6, 7]]
-        return float((change / (absolute + t.relative * size)).max())
-
-    def _accept(self, state: State, trial: State, increment: Array) -> State:
-        unused = np.zeros((3, len(increment), 6, 6))
-        _place(
-            increment, state.position, state.rotation, 0.0, 0.0,
-            trial.position, trial.rotation, *unused,
-        )  # fmt: skip
-        _polish(trial.rotation)
-        return trial
 
     def _failure(self, balance: Balance, time: float) -> ConvergenceError:
         worst = int(np.nan_to_num(np.abs(balance.residual), nan=np.inf).max(axis=1).argmax())

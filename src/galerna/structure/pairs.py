@@ -207,5 +207,14 @@ def carried_on(pairs: Pairs, before: PairAnswer, variation: Array, multiplier: A
     Methods Appl. Mech. Eng. 313 (2017) 986, where the iteration is derived from stresses
     as unknowns of their own.
     """
-    moved = np.einsum("mij,mj->mi", before.direction, variation[pairs.ends].reshape(-1, 12))
-    return before.wrench + np.einsum("mij,mj->mi", pairs.stiffness, moved) + multiplier
+    return _carried_on(pairs, before, variation, multiplier)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _carried_on(pairs: Pairs, before: PairAnswer, variation: Array, multiplier: Array) -> Array:
+    out = before.wrench + multiplier
+    for e in range(len(out)):
+        first, second = variation[pairs.ends[e, 0]], variation[pairs.ends[e, 1]]
+        P = before.direction[e]
+        out[e] += apply(pairs.stiffness[e], apply(P[:, :6], first) + apply(P[:, 6:], second))
+    return out
