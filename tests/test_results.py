@@ -131,6 +131,37 @@ def test_a_half_written_result_is_not_overwritten_unasked(tmp_path):
         write(tmp_path / "case.nc")
 
 
+def test_two_runs_do_not_write_one_result(tmp_path):
+    pytest.importorskip("fcntl")
+    first = write(tmp_path / "case.nc")
+    with pytest.raises(InputError, match="another run is writing this result"):
+        write(tmp_path / "case.nc", times=[7.0], overwrite=True)
+    first.append(0.4, record(0.4))
+    first.finish()
+    np.testing.assert_array_equal(open_result(tmp_path / "case.nc")["time"], [0.1, 0.2, 0.3, 0.4])
+
+
+@pytest.mark.parametrize("room", [100, 3300])
+def test_a_full_disk_is_said_and_leaves_the_complete_records(tmp_path, room):
+    resource = pytest.importorskip("resource")
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    result = write(tmp_path / "case.nc", times=[0.1])
+    size = log_of(tmp_path / "case.nc").stat().st_size
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size + room, limits[1]))
+    try:
+        with pytest.raises(InputError, match=r"case\.nc(\.log)?: cannot be written"):
+            for t in 0.2 + 0.1 * np.arange(100):
+                result.append(t, record(t))
+        with pytest.raises(InputError, match=r"case\.nc: cannot be written"):
+            result.finish()
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["case.nc.log"]
+    left = open_result(tmp_path / "case.nc")
+    assert left.sizes["time"] == 1 + room // (8 * LAYOUT.width)
+    np.testing.assert_array_equal(left["rotor_power"], 5e6 * np.sin(left["time"]))
+
+
 def test_a_channel_that_is_not_a_number_is_named(tmp_path):
     result = write(tmp_path / "case.nc")
     with pytest.raises(ConvergenceError, match=r"t = 0\.4 s: channel 'pitch' is not a number"):

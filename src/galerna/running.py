@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from galerna import __version__
 from galerna.case import Case, LoadedCase, load
 from galerna.cite import references
-from galerna.errors import GalernaError
+from galerna.errors import GalernaError, InputError
 from galerna.machine import Machine, build_machine
 from galerna.results.log import Layout
 from galerna.results.store import ResultFile, check_free
@@ -58,7 +59,8 @@ def simulate(
         machine.simulation.run(settings.duration_s, [recorder, *callbacks])
     except (GalernaError, KeyboardInterrupt) as error:
         reason = str(error).splitlines()[0] if str(error) else "interrupted"
-        result.finish(f"stopped at {machine.simulation.time:.6g} s: {reason}")
+        with suppress(InputError):  # a full disk: the log holds the records
+            result.finish(f"stopped at {machine.simulation.time:.6g} s: {reason}")
         error.add_note(f"the records so far are in {output}")
         raise
     return result.finish(machine.simulation.stopped or "complete")

@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
+from io import FileIO
 from itertools import pairwise
 from pathlib import Path
 
@@ -74,11 +75,16 @@ class Log:
         self.path = path
         self._slices = tuple(layout.slices().items())
         self._row = np.zeros(layout.width, dtype="<f8")
-        self._file = path.open("wb", buffering=0)
-        self._file.write(MAGIC + layout.to_json().encode() + b"\n")
+        self._file = path.open("ab", buffering=0)
+        _claim(self._file, path)
+        self._file.truncate(0)
+        self._write(MAGIC + layout.to_json().encode() + b"\n")
 
     def append(self, time: float, record: Mapping[str, float | Array]) -> None:
-        """Add the record at ``time`` s; ConvergenceError if a channel is not a number."""
+        """Add the record at ``time`` s.
+
+        Raises ConvergenceError if a channel is not a number, InputError if the disk is full.
+        """
         row = self._row
         row[0] = time
         for name, place in self._slices:
@@ -89,10 +95,36 @@ class Log:
                 (n for n, place in self._slices if not np.isfinite(row[place]).all()), "time"
             )
             raise ConvergenceError("results", f"channel {bad!r} is not a number", time=time)
-        self._file.write(row.tobytes())
+        self._write(row.tobytes())
 
     def close(self) -> None:
         self._file.close()
+
+    def _write(self, data: bytes) -> None:
+        try:
+            written = self._file.write(data)
+        except OSError as error:
+            raise InputError(str(self.path), f"cannot be written: {error.strerror}") from error
+        if written != len(data):  # what a disk does with its last bytes
+            raise InputError(str(self.path), "cannot be written: the disk is full")
+
+
+def _claim(file: FileIO, path: Path) -> None:
+    """Keep other runs out until the file is closed or the process is gone, where a system can.
+
+    Raises InputError if another run is in.
+    """
+    try:
+        import fcntl
+    except ImportError:  # Windows
+        return
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        hint = "name another file with --output, or let that run end"
+        raise InputError(str(path), "another run is writing this result", hint) from None
+    except OSError:  # a file system without locks
+        return
 
 
 def read_log(path: Path) -> tuple[Layout, Array]:

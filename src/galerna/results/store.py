@@ -28,7 +28,8 @@ class ResultFile:
     """The result of one run on disk: append records, then ``finish``.
 
     Raises InputError if a result stands there already and ``overwrite`` is not set;
-    with it, the old result stays until the new one is complete.
+    with it, the old result stays until the new one is complete. Raises InputError too
+    if another run is writing there.
     """
 
     def __init__(self, path: Path, layout: Layout, overwrite: bool = False) -> None:
@@ -42,10 +43,13 @@ class ResultFile:
         self._log.append(time, record)
 
     def finish(self, status: str = "complete") -> xarray.Dataset:
-        """Turn the log into a NetCDF file and return what it holds."""
-        self._log.close()
+        """Turn the log into a NetCDF file and return what it holds.
+
+        Raises InputError if the file cannot be written; the log stays then.
+        """
         dataset = _dataset(*read_log(self._log.path), status)
         write_netcdf(dataset, self.path)
+        self._log.close()  # not before: it keeps other runs out
         self._log.path.unlink()
         return dataset
 
@@ -82,11 +86,15 @@ def open_result(path: str | Path) -> xarray.Dataset:
 
 
 def write_netcdf(dataset: xarray.Dataset, path: Path) -> None:
-    """Write a NetCDF file, complete or not at all."""
+    """Write a NetCDF file, complete or not at all; InputError if the disk does not take it."""
     encoding = {name: {"zlib": True, "complevel": 1} for name in dataset.data_vars}
     unfinished = path.with_name(path.name + ".unfinished")
-    dataset.to_netcdf(unfinished, engine="netcdf4", encoding=encoding)
-    os.replace(unfinished, path)
+    try:
+        dataset.to_netcdf(unfinished, engine="netcdf4", encoding=encoding)
+        os.replace(unfinished, path)
+    except (OSError, RuntimeError) as error:  # netCDF4 raises RuntimeError for a full disk
+        unfinished.unlink(missing_ok=True)
+        raise InputError(str(path), f"cannot be written: {error}") from error
 
 
 def _dataset(layout: Layout, rows: Array, status: str) -> xarray.Dataset:
