@@ -28,22 +28,19 @@ ROTOR_CHANNELS = (
     ),
     Channel("rotor_axial_induction", "1", "axial induction, mean over the disc"),
 )
+# Without OpenFAST's names: its B1AeroMx and B1AeroMy are about axes that pitch with the blade.
 BLADE_CHANNELS = (
     Channel(
         "aerodynamic_root_in_plane_moment",
         "N m",
         "aerodynamic in-plane moment at the blade root",
         ("blade",),
-        "B{blade}AeroMx",
-        "N-m",
     ),
     Channel(
         "aerodynamic_root_out_of_plane_moment",
         "N m",
         "aerodynamic out-of-plane moment at the blade root",
         ("blade",),
-        "B{blade}AeroMy",
-        "N-m",
     ),
 )
 
