@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from galerna import turbine as turbines
+from galerna.figures import frequencies, rated_point
 from galerna.turbine.model import Turbine
 from galerna.turbine.summary import Row, fitted_airfoils, summary
 
@@ -29,8 +30,11 @@ version does not matter: ElastoDyn, AeroDyn with polars and coordinates, BeamDyn
 ServoDyn and ROSCO's DISCON.IN. `turbine.notes` lists what a reader decided, missed or
 left out; `galerna.turbine.windio.write(turbine, "file.yaml")` writes windIO.
 
-`galerna turbine NAME` prints what follows for any turbine. A difference is shown where
-both figures exist; frequencies are the published ones until the structure computes them.
+`galerna turbine NAME` prints what follows for any turbine, and its notes. A difference is
+shown where both figures exist. The rated point is the lowest wind speed at which the steady
+power curve gives rated power, with the rotor speed there by the turbine's own strategy; the
+peak power coefficient is the largest at fine pitch, with the wind along the shaft. Where
+natural frequencies are published, those of the parked machine are computed beside them.
 """
 
 
@@ -47,6 +51,7 @@ def line(row: Row) -> str:
 def section(name: str, turbine: Turbine) -> list[str]:
     """The heading, the sources and the table of one turbine."""
     fitted = ", ".join(fitted_airfoils(turbine)) or "none"
+    rows = summary(turbine, rated_point(turbine) | frequencies(turbine))
     return [
         f"## `{name}`: {turbine.name}",
         "",
@@ -55,7 +60,7 @@ def section(name: str, turbine: Turbine) -> list[str]:
         "",
         "| quantity | unit | galerna | published | difference | source of published |",
         "|---|---|---:|---:|---:|---|",
-        *map(line, summary(turbine)),
+        *map(line, rows),
         "",
     ]
 

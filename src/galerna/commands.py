@@ -126,25 +126,21 @@ def list_turbines() -> None:
 def show_turbine(name: str) -> None:
     """A turbine's figures beside the published ones, with difference and source."""
     from galerna import turbine as turbines
+    from galerna.figures import frequencies, rated_point
     from galerna.turbine.summary import fitted_airfoils, summary
 
     turbine = turbines.load(name)
-    rows = [
-        (
-            row.quantity,
-            row.unit,
-            tables.number(row.value),
-            tables.number(row.published),
-            "" if row.difference is None else f"{100.0 * row.difference:+.2f} %",
-            row.source,
-        )
-        for row in summary(turbine)
-    ]
-    headings = ("quantity", "unit", "galerna", "published", "difference", "source of published")
-    tables.print_rows(turbine.name, headings, rows, numbers_from=2)
-    fitted = fitted_airfoils(turbine)
-    if fitted:
+    solved: dict[str, float] = {}
+    for solve in (rated_point, frequencies):
+        try:
+            solved |= solve(turbine)
+        except GalernaError as error:
+            print(f"not computed: {error}", file=sys.stderr)
+    tables.print_figures(turbine.name, summary(turbine, solved))
+    if fitted := fitted_airfoils(turbine):
         print(f"unsteady parameters fitted from the polar: {', '.join(fitted)}")
+    for note in turbine.notes:
+        print(f"note: {note}")
 
 
 def power_curve(name: str, plot: Path | None, csv: Path | None, step: float) -> None:

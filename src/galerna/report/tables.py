@@ -11,21 +11,13 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from galerna.report.rotor import ROTOR_CHANNELS
 from galerna.report.style import shown
 
 if TYPE_CHECKING:
     import xarray
 
-#: what the summary of a run shows, as far as the result has it
-SUMMARY = (
-    "wind_speed",
-    "rotor_speed",
-    "pitch",
-    "rotor_power",
-    "rotor_thrust",
-    "aerodynamic_root_out_of_plane_moment",
-    "aerodynamic_root_in_plane_moment",
-)
+    from galerna.turbine.summary import Row
 
 
 def table(title: str, *headings: str, numbers_from: int = 1) -> Table:
@@ -49,7 +41,7 @@ def statistics(dataset: xarray.Dataset) -> Table:
     """Mean, standard deviation and extremes of the main channels; of blades, over all blades."""
     name = dataset.attrs.get("case_name", "result")
     made = table(name, "quantity", "unit", "mean", "std", "min", "max", numbers_from=2)
-    for channel in SUMMARY:
+    for channel in ROTOR_CHANNELS:
         if channel not in dataset:
             continue
         values, unit = shown(dataset[channel])
@@ -82,6 +74,23 @@ def print_curve(name: str, curve: xarray.Dataset) -> None:
         for i, wind in enumerate(curve["wind_speed"].values)
     )
     print_rows(name, ("wind speed [m/s]", *headings, "C_P", "C_T"), rows, numbers_from=0)
+
+
+def print_figures(name: str, figures: Iterable[Row]) -> None:
+    """The table of a turbine's figures beside the published ones."""
+    rows = (
+        (
+            row.quantity,
+            row.unit,
+            number(row.value),
+            number(row.published),
+            "" if row.difference is None else f"{100.0 * row.difference:+.2f} %",
+            row.source,
+        )
+        for row in figures
+    )
+    headings = ("quantity", "unit", "galerna", "published", "difference", "source of published")
+    print_rows(name, headings, rows, numbers_from=2)
 
 
 def print_pairs(pairs: Iterable[tuple[str, str]]) -> None:

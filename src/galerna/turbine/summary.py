@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import partial
 
@@ -32,12 +32,16 @@ class Row:
         return (self.value - self.published) / abs(self.published)
 
 
-def summary(turbine: Turbine) -> list[Row]:
-    """Every figure of a turbine that galerna computes or that its file says is published."""
-    rows = []
+def summary(turbine: Turbine, solved: Mapping[str, float] | None = None) -> list[Row]:
+    """Every figure of a turbine that galerna computes or that its file says is published.
+
+    ``solved`` holds figures that take a solver, by quantity, in the units of the table; one
+    of them replaces what the turbine's own data say.
+    """
+    rows, solved = [], solved or {}
     published = {p.quantity: p for p in turbine.published}
     for quantity, (unit, compute) in QUANTITIES.items():
-        value = compute(turbine)
+        value = solved.get(quantity, compute(turbine))
         known = published.pop(quantity, None)
         if known is not None and known.unit == unit:
             rows.append(Row(quantity, value, unit, known.value, known.source))
@@ -45,8 +49,11 @@ def summary(turbine: Turbine) -> list[Row]:
             rows.append(Row(quantity, value, unit))
         if known is not None and known.unit != unit:
             published[quantity] = known
-    left = published.values()
-    return rows + [Row(p.quantity, None, p.unit, p.value, p.source) for p in left]
+    others = {q: value for q, value in solved.items() if q not in QUANTITIES}
+    return rows + [
+        Row(p.quantity, others.get(p.quantity), p.unit, p.value, p.source)
+        for p in published.values()
+    ]
 
 
 def fitted_airfoils(turbine: Turbine) -> tuple[str, ...]:
@@ -161,6 +168,10 @@ def _center_of_mass(axis: int, turbine: Turbine) -> float | None:
     return float(sum(mass * place[axis] for mass, place in parts) / total)
 
 
+def _unsolved(turbine: Turbine) -> None:
+    """What only a solver can tell."""
+
+
 def _rated_torque(turbine: Turbine) -> float:
     """Generator torque that gives rated power at rated speed, N m."""
     drivetrain, control = turbine.drivetrain, turbine.control
@@ -190,7 +201,7 @@ QUANTITIES: dict[str, tuple[str, Callable[[Turbine], float | None]]] = {
     "overall_center_of_mass_z": ("m", partial(_center_of_mass, 2)),
     "platform_mass": ("kg", lambda t: t.platform.mass if t.platform else None),
     "rated_power": ("W", lambda t: t.control.rated_power),
-    "rated_wind_speed": ("m/s", lambda t: t.control.rated_wind_speed),
+    "rated_wind_speed": ("m/s", _unsolved),
     "rated_rotor_speed": ("rpm", lambda t: t.control.rated_rotor_speed / RPM),
     "rated_tip_speed": ("m/s", lambda t: t.control.rated_rotor_speed * t.rotor_radius),
     "rated_generator_speed": (
@@ -199,4 +210,5 @@ QUANTITIES: dict[str, tuple[str, Callable[[Turbine], float | None]]] = {
     ),
     "rated_generator_torque": ("N m", _rated_torque),
     "optimal_tip_speed_ratio": ("-", lambda t: t.control.optimal_tip_speed_ratio),
+    "peak_power_coefficient": ("-", _unsolved),
 }

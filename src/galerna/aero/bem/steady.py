@@ -154,8 +154,7 @@ def power_curve(
     ratio = control.optimal_tip_speed_ratio or optimal_tip_speed_ratio(turbine, options)
     rows = []
     for wind in winds:
-        speed = ratio * wind / turbine.rotor_radius
-        speed = float(np.clip(speed, control.minimum_rotor_speed, control.rated_rotor_speed))
+        speed = strategy_speed(turbine, ratio, float(wind))
         pitch = _power_limited_pitch(rotor, float(wind), speed)
         integrals = _integrals(rotor.at(float(wind), speed, pitch), rotor, float(wind))
         rows.append({"rotor_speed": speed, "pitch": pitch, **integrals})
@@ -169,6 +168,13 @@ def power_curve(
 def efficiency(turbine: Turbine) -> float:
     """Share of the rotor's power that reaches the grid."""
     return turbine.drivetrain.gearbox_efficiency * turbine.drivetrain.generator_efficiency
+
+
+def strategy_speed(turbine: Turbine, tip_speed_ratio: float, wind_speed: float) -> float:
+    """Rotor speed rad/s of a tip-speed ratio, within the turbine's limits of speed."""
+    control = turbine.control
+    wanted = tip_speed_ratio * wind_speed / turbine.rotor_radius
+    return float(np.clip(wanted, control.minimum_rotor_speed, control.rated_rotor_speed))
 
 
 def minimum_pitch(turbine: Turbine, wind_speed: float) -> float:
