@@ -1,11 +1,13 @@
 """The judge itself: differences, verdicts, selection."""
 
+import json
 import math
 
+import numpy as np
 import pytest
 
 from galerna.errors import InputError
-from validation.framework import Case, Check, as_records, page, run_case, select
+from validation.framework import Case, Check, as_records, page, run_case, select, write_json
 
 
 def check(value, tolerance=0.1, relative=True):
@@ -42,3 +44,12 @@ def test_selection_by_group_or_name_and_a_misspelt_one_is_answered():
     assert len(select(cases, [])) == 2
     with pytest.raises(InputError, match="rotor"):
         select(cases, ["rotr"])
+
+
+def test_numbers_of_numpy_go_into_json(tmp_path):
+    figure = Check("x", np.float32(2.1), np.float64(2.0), "arithmetic", np.float32(0.1))
+    outcome = run_case(Case("a", "rotor", "A", lambda: [figure], 1))
+    write_json([outcome], tmp_path / "out.json")
+    (record,) = json.loads((tmp_path / "out.json").read_text())
+    assert record["passed"] is True
+    assert record["difference"] == pytest.approx(0.1, rel=1e-5)

@@ -111,12 +111,12 @@ def as_records(outcomes: Iterable[Outcome]) -> list[dict[str, object]]:
                 "group": case.group,
                 "quantity": check.quantity,
                 "unit": check.unit,
-                "reference": check.reference,
+                "reference": float(check.reference),
                 "source": check.source,
-                "value": check.value,
-                "difference": check.difference,
+                "value": float(check.value),
+                "difference": float(check.difference),
                 "relative": check.relative,
-                "tolerance": check.tolerance,
+                "tolerance": None if check.tolerance is None else float(check.tolerance),
                 "passed": check.passed,
             }
             for check in outcome.checks

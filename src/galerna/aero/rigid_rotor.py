@@ -10,16 +10,8 @@ import numpy as np
 
 from galerna.aero.sections import BladeSections
 from galerna.contract import Array, Motion
+from galerna.structure.frames import rotation_about
 from galerna.turbine.model import Turbine
-
-
-def rotation_about(axis: int, angle: float) -> Array:
-    """Rotation matrix (3,3) by ``angle`` rad about axis 0, 1 or 2."""
-    c, s = np.cos(angle), np.sin(angle)
-    i, j = (axis + 1) % 3, (axis + 2) % 3
-    matrix = np.eye(3)
-    matrix[[i, j], [i, j]], matrix[i, j], matrix[j, i] = c, -s, s
-    return matrix
 
 
 def wind_in_shaft_axes(turbine: Turbine, wind_speed: float, yaw_error: float = 0.0) -> Array:
