@@ -28,6 +28,10 @@ outputs:
   interval_s: 0.1
 """
 
+BOX = """\
+  turbulence: {{kind: mann, turbulence_class: B, points: {}, spacing_m: [1, 2, 3]}}
+  shear"""
+
 
 def refused(text):
     with pytest.raises(InputError) as caught:
@@ -77,6 +81,30 @@ def test_a_good_case_is_read():
         ("time_step_s: 0.05", "seed: 1.5", "4: seed: expected a whole number, found 1.5"),
         ("[0, 2]", "[0, x]", "12: operation.pitch_deg.values[1]: expected a number, found 'x'"),
         ("8.0", "[8.0, 9.0]", "expected a number, found a list of 2"),
+        ("8.0", "true", "6: inflow.wind_speed_m_s: expected a number, found true"),
+        ("8.0", '"8.0"', "6: inflow.wind_speed_m_s: expected a number, found '8.0'"),
+        ("  model: bem", "  tip_loss: 1", "9: aerodynamics.tip_loss: expected true or false"),
+        ("time_step_s: 0.05", 'seed: "1"', "seed: expected a whole number, found '1'"),
+        (
+            "9.16",
+            "[9.16, 9]",
+            "11: operation.rotor_speed_rpm: expected a number or a series, found",
+        ),
+        ("{time_s: [0, 5], values: [0, 2]}", "[]", "pitch_deg: expected 1 value or more, found 0"),
+        ("{kind: power_law, exponent: 0.2}", "0.2", "7: inflow.shear: expected a mapping of keys"),
+        (
+            "interval_s: 0.1",
+            "interval_s: 4\n  start_s: 9",
+            "start_s: 9 s leaves no record: the last",
+        ),
+        ("duration_s: 10", "duration_s: 1e308", "3: duration_s: 1e+308 s are too many time steps"),
+        ("  shear", BOX.format("[64, 8]"), "7: inflow.turbulence.points[2]: this value is missing"),
+        (
+            "  shear",
+            BOX.format("[8, 8, 8, 8]"),
+            "7: inflow.turbulence.points: expected 3 values at",
+        ),
+        ("outputs:", "<<: {seed: 2}\noutputs:", "13: <<: keys must be plain names"),
     ],
 )
 def test_what_is_wrong_is_said(wrong, right, message):

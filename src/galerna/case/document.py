@@ -146,9 +146,11 @@ class _Reader:
     def _pairs(self, node: Any, path: KeyPath) -> Iterator[tuple[str, Any]]:
         seen: dict[str, int] = {}
         for key_node, value_node in node.value:
-            key, line = str(key_node.value), key_node.start_mark.line + 1
-            if key_node.id != "scalar" or key == "<<":
-                self.problems.append(Problem(path, "keys must be plain names"))
+            key = str(key_node.value) if key_node.id == "scalar" else "?"
+            line = key_node.start_mark.line + 1
+            if key in ("?", "<<"):
+                self.document.lines[(*path, key)] = line
+                self.problems.append(Problem((*path, key), "keys must be plain names"))
                 continue
             if key in seen:
                 what = f"given twice, first in line {seen[key]}"

@@ -14,17 +14,22 @@ from galerna.errors import did_you_mean
 #: what pydantic calls by Python's names
 PLAIN_WORDS = {
     "model_type": "a mapping of keys to values",
+    "model_attributes_type": "a mapping of keys to values",
     "dict_type": "a mapping of keys to values",
     "tuple_type": "a list",
     "list_type": "a list",
     "string_type": "a text",
     "float_type": "a number",
     "float_parsing": "a number",
+    "int_type": "a whole number",
     "int_parsing": "a whole number",
     "int_from_float": "a whole number",
     "bool_parsing": "true or false",
     "bool_type": "true or false",
 }
+
+#: what a list of a wrong length lacks: the limit it breaks, and in which sense
+LENGTHS = {"too_short": ("min_length", "or more"), "too_long": ("max_length", "at most")}
 
 
 def problems_of(error: ValidationError, model: type[BaseModel], values: Any) -> list[Problem]:
@@ -42,8 +47,8 @@ def _path(location: Sequence[str | int], values: Any, kind: str) -> KeyPath:
     """The keys of a location, without the names of union members that pydantic puts between."""
     path: list[str | int] = []
     for part in location:
-        known = isinstance(values, Mapping) and part in values
-        if not known and not (isinstance(values, Sequence) and isinstance(part, int)):
+        known = part in values if isinstance(values, Mapping) else _is_item(values, part)
+        if not known:
             continue
         path.append(part)
         values = values[part]
@@ -52,13 +57,18 @@ def _path(location: Sequence[str | int], values: Any, kind: str) -> KeyPath:
     return tuple(path)
 
 
+def _is_item(values: Any, part: str | int) -> bool:
+    return isinstance(values, Sequence) and isinstance(part, int) and part < len(values)
+
+
 def _problem(path: KeyPath, entry: Mapping[str, Any], model: type[BaseModel]) -> Problem:
     kind, found, context = entry["type"], entry.get("input"), entry.get("ctx", {})
     if kind == "extra_forbidden":
         names = names_at(model, entry["loc"][:-1])
         return Problem(path, "unknown key", did_you_mean(str(path[-1]), names))
     if kind == "missing":
-        return Problem(path, "this key is missing", _describe(model, entry["loc"]))
+        noun = "value" if isinstance(path[-1], int) else "key"
+        return Problem(path, f"this {noun} is missing", _describe(model, entry["loc"]))
     if kind == "union_tag_not_found":
         return Problem(path, f"needs the key {context['discriminator']}")
     if kind == "literal_error":
@@ -68,8 +78,15 @@ def _problem(path: KeyPath, entry: Mapping[str, Any], model: type[BaseModel]) ->
     if kind == "union_tag_invalid":
         valid = re.findall(r"'([^']*)'", context["expected_tags"])
         key = context["discriminator"].strip("'")
+        if key.endswith("()"):  # told apart by form, not by a key
+            return Problem(path, f"expected a {' or a '.join(valid)}, found {_shown(found)}")
         what = f"expected {context['expected_tags']}, found {context['tag']!r}"
         return Problem((*path, key), what, did_you_mean(context["tag"], valid))
+    if kind in LENGTHS:
+        limit, sense = LENGTHS[kind]
+        number, values = context[limit], "value" if context[limit] == 1 else "values"
+        what = f"expected {number} {values} {sense}, found {context['actual_length']}"
+        return Problem(path, what)
     message = entry["msg"].removeprefix("Value error, ")
     if message.startswith("Input should be "):
         expected = message.removeprefix("Input should be ").split(", unable to")[0]

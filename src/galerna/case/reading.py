@@ -17,6 +17,8 @@ from galerna.case.options import Case
 from galerna.case.problems import problems_of
 from galerna.errors import InputError, did_you_mean
 
+MOST_STEPS = 1e12
+
 
 @dataclass(frozen=True)
 class LoadedCase:
@@ -81,7 +83,8 @@ def _from_document(document: Document, folder: Path) -> LoadedCase:
 
 def _validate(document: Document) -> Case:
     try:
-        case = Case.model_validate(document.values)
+        # as JSON, where strict means that true is no number and "10" neither
+        case = Case.model_validate_json(json.dumps(document.values), strict=True)
     except ValidationError as error:
         raise CaseError(document, problems_of(error, Case, document.values)) from None
     problems = list(_contradictions(case))
@@ -96,8 +99,15 @@ def _contradictions(case: Case) -> Iterator[Problem]:
     if duration < step:
         what = f"{duration:g} s is less than one time_step_s of {step:g} s"
         yield Problem(("duration_s",), what)
+    if duration / step > MOST_STEPS:
+        yield Problem(("duration_s",), f"{duration:g} s are too many time steps of {step:g} s")
+        return
+    last = round(duration / step) // case.record_every * case.record_every * step
     if outputs.start_s >= duration:
         what = f"{outputs.start_s:g} s leaves nothing of the {duration:g} s of duration_s"
+        yield Problem(("outputs", "start_s"), what)
+    elif outputs.start_s > last:
+        what = f"{outputs.start_s:g} s leaves no record: the last one is at {last:g} s"
         yield Problem(("outputs", "start_s"), what)
     interval = outputs.interval_s
     if interval is None:
