@@ -217,8 +217,11 @@ def blade(folder: Path, htc: str, polars: list) -> dict:
         "structure": {
             "anchors": [],
             "layers": [],
-            "elastic_properties": beam(
-                st_grid, stiffness, inertia, [0.0, 0.0, 0.0, 2.55e-3, 1.53e-3, 3.3e-4]
+            "elastic_properties": beam(  # of damping_posdef, the second factor is the flapwise one:
+                st_grid,  # only so are both bending modes damped as the htc file says, by 3 %
+                stiffness,
+                inertia,
+                [0.0, 0.0, 0.0, 1.53e-3, 2.55e-3, 3.3e-4],
             ),
         },
     }

@@ -144,6 +144,18 @@ def test_sections_are_physical(turbine: Turbine) -> None:
     assert (s.stiffness[outboard, 3, 3] > s.stiffness[outboard, 4, 4]).all()  # edge above flap
 
 
+def test_damping_is_three_per_cent_flapwise_and_edgewise(turbine: Turbine) -> None:
+    """HAWCStab2's first collective flap and mean edge frequencies at 6 rpm, Hz.
+
+    The htc file says that both are tuned to a logarithmic decrement of 3 %, 2 pi^2 f mu; its
+    factors, first and second, only do so as those of the edgewise and the flapwise moment.
+    """
+    damping = turbine.blade.structure.damping
+    flap, edge = 2 * np.pi**2 * np.array([0.645481, (0.829324 + 1.02974) / 2])
+    assert_allclose(flap * damping[4], 0.03, rtol=0.1)
+    assert_allclose(edge * damping[3], 0.03, rtol=0.1)
+
+
 def test_airfoils(turbine: Turbine) -> None:
     """Each outline is as thick as its name says, and stands where the blade is."""
     shape = turbine.blade.shape
