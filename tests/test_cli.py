@@ -188,6 +188,13 @@ def test_the_written_wind_drives_the_same_rotor(case):
     assert abs(thrust[1] - thrust[0]).max() < 1e-3 * thrust[0].max()
 
 
+def test_wind_that_a_file_cannot_hold_is_named(case, capsys):
+    turned = "inflow:\n  direction_deg: 20\n  gust: {kind: EOG, start_s: 1}\n"
+    case.write_text(TURBULENT.replace("inflow:\n", turned))
+    assert galerna("wind", case, "--bts", "w.bts") == 0
+    assert "not in the file: direction_deg, gust" in capsys.readouterr().err
+
+
 def test_wind_without_turbulence_cannot_be_written(case, capsys):
     assert galerna("wind", case, "--bts", "w.bts") == 2
     assert "no turbulence to write" in capsys.readouterr().err

@@ -16,6 +16,17 @@ from galerna.report import tables
 
 if TYPE_CHECKING:
     from galerna.inflow.field import WindField
+    from galerna.inflow.options import InflowOptions
+
+#: of a case's inflow, what a file with a turbulence box leaves out
+NOT_IN_A_BOX = (
+    "time_series",
+    "time_series_file",
+    "direction_deg",
+    "upflow_deg",
+    "veer_deg_per_m",
+    "gust",
+)
 
 
 class InterruptedRunError(GalernaError):
@@ -177,6 +188,7 @@ def wind(case: str, bts: Path | None, hawc2: Path | None, plot: Path | None) -> 
     tables.print_pairs(("inflow", line) for line in built.description)
     if bts is not None or hawc2 is not None:
         _write_box(built.field, bts, hawc2)
+        _name_left_out(loaded.case.inflow)
     if plot is not None:
         rotor = RotorCircle(turbine.hub_height, turbine.rotor_radius)
         figure = inflow_figure(built.field, rotor, loaded.case.duration_s, name=loaded.name)
@@ -195,6 +207,13 @@ def _write_box(field: WindField, bts: Path | None, hawc2: Path | None) -> None:
         print(f"TurbSim file: {bts}")
     if hawc2 is not None:
         print("HAWC2 files: " + ", ".join(str(path) for path in write_hawc2(hawc2, box)))
+
+
+def _name_left_out(inflow: InflowOptions) -> None:
+    """Say what of the wind stands in the case alone: a box holds no change over time or turn."""
+    left_out = [name for name in NOT_IN_A_BOX if getattr(inflow, name)]
+    if left_out:
+        print(f"not in the file: {', '.join(left_out)}", file=sys.stderr)
 
 
 def validate(names: list[str], list_only: bool, json_file: Path | None, page: Path | None) -> int:

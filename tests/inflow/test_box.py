@@ -40,6 +40,7 @@ def test_moved_and_scaled_boxes_leave_the_first_alone():
     b = box()
     assert b.standing_on(0.0).bottom == 0.0
     np.testing.assert_array_equal(b.scaled(2.0).data, 2 * b.data)
+    np.testing.assert_array_equal(box(tower=np.ones((3, 6, 2))).scaled(2.0).tower, 2.0)
     assert b.bottom == 82.0
     np.testing.assert_array_equal(b.data, DATA.astype(np.float32))
 
@@ -69,6 +70,7 @@ def test_fluctuations_have_no_mean():
         ({"data": DATA[:, :1]}, "at least 2 points"),
         ({"data": np.where(DATA > 2, np.nan, DATA)}, "not finite"),
         ({"data": np.where(DATA > 2, np.inf, DATA)}, "not finite"),
+        ({"data": np.where(DATA > 2, -1e30, DATA)}, "holds a wind of 1e.30 m/s"),
         ({"tower": np.zeros((3, 5, 2))}, "tower rows"),
     ],
 )

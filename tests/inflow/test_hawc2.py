@@ -77,6 +77,12 @@ def test_numbers_that_are_none(files):
         read_hawc2(files, SHAPE, SPACING, **PLACE)
 
 
+def test_numbers_of_another_machine(files):
+    np.linspace(1.0, 3.0, 60).astype(">f4").tofile(files[2])
+    with pytest.raises(InputError, match="holds a wind of"):
+        read_hawc2(files, SHAPE, SPACING, **PLACE)
+
+
 def test_missing_file(files):
     with pytest.raises(InputError, match="cannot be read"):
         read_hawc2([*files[:2], files[2].with_name("none.bin")], SHAPE, SPACING, **PLACE)

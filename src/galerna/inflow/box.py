@@ -13,6 +13,8 @@ from galerna.errors import InputError
 
 Block = NDArray[np.float32]
 
+FASTEST_WIND = 500.0  #: m/s; faster than this is a damaged file
+
 
 @dataclass(frozen=True, eq=False)
 class Box:
@@ -80,10 +82,7 @@ class Box:
             if block is None:
                 continue
             block = np.ascontiguousarray(block, dtype=np.float32)
-            with np.errstate(invalid="ignore"):
-                total = float(block.sum(dtype=np.float64))  # one pass that no NaN survives
-            if not math.isfinite(total):
-                raise InputError(self.source, "holds velocities that are not finite numbers")
+            _check_speed(block, self.source)
             object.__setattr__(self, name, block)
 
     @property
@@ -179,7 +178,8 @@ class Box:
                 "holds the mean wind too and cannot be scaled",
                 "take the fluctuations first: box.fluctuations()",
             )
-        return replace(self, data=self.data * np.float32(factor))
+        tower = None if self.tower is None else self.tower * np.float32(factor)
+        return replace(self, data=self.data * np.float32(factor), tower=tower)
 
     def fluctuations(self) -> Box:
         """The box without the mean over time of each component at each point."""
@@ -187,6 +187,16 @@ class Box:
             return self
         tower = None if self.tower is None else _without_mean(self.tower)
         return replace(self, data=_without_mean(self.data), tower=tower, holds_mean=False)
+
+
+def _check_speed(block: Block, source: str) -> None:
+    """InputError if a velocity is not a number, or no wind on earth."""
+    fastest = float(np.maximum(block.max(initial=0.0), -block.min(initial=0.0)))  # passes a NaN on
+    if not math.isfinite(fastest):
+        raise InputError(source, "holds velocities that are not finite numbers")
+    if fastest > FASTEST_WIND:
+        what = f"holds a wind of {fastest:g} m/s"
+        raise InputError(source, what, "the file is damaged, or is not what it is taken for")
 
 
 def _without_mean(block: Block) -> Block:

@@ -20,7 +20,6 @@ from galerna.inflow.mean import Profile
 from galerna.inflow.storage import check_size, finite, open_binary, positive
 
 PLAIN, PERIODIC = 7, 8  #: identifiers of a file that does not, or does repeat in time
-FASTEST_WIND = 500.0  #: m/s; faster than this is a damaged file
 LOWEST, LEVELS = -32768, 65535
 HEADER = struct.Struct("<h4i12fi")
 
@@ -82,7 +81,7 @@ def read_bts(path: Path | str) -> Box:
     tower = steps[:, in_grid:].reshape(header.nt, header.tower_rows, 3)
     periodic = header.identifier == PERIODIC
     return Box(
-        data=_velocities(grid.transpose(3, 0, 2, 1), header, path),
+        data=_velocities(grid.transpose(3, 0, 2, 1), header),
         spacing=(header.dt * header.hub_speed, header.dy, header.dz),
         mean_speed=header.hub_speed,
         hub_height=header.hub_height,
@@ -90,7 +89,7 @@ def read_bts(path: Path | str) -> Box:
         periodic=periodic,
         lead=0.0 if periodic else 0.5 * (header.ny - 1) * header.dy,
         holds_mean=True,
-        tower=_velocities(tower.transpose(2, 0, 1), header, path) if header.tower_rows else None,
+        tower=_velocities(tower.transpose(2, 0, 1), header) if header.tower_rows else None,
         source=str(path),
     )
 
@@ -155,7 +154,7 @@ def _read_header(file: BinaryIO, path: Path | str) -> Header:
     return header
 
 
-def _velocities(numbers: Array, header: Header, path: Path | str) -> Block:
+def _velocities(numbers: Array, header: Header) -> Block:
     """Velocities m/s of numbers, the components along the first axis of both."""
     velocities = np.empty(numbers.shape, dtype=np.float32)
     with np.errstate(over="ignore", invalid="ignore"):
@@ -163,9 +162,6 @@ def _velocities(numbers: Array, header: Header, path: Path | str) -> Block:
             velocities[c] = numbers[c]
             velocities[c] -= np.float32(header.offsets[c])
             velocities[c] /= np.float32(header.scales[c])
-    fastest = float(max(velocities.max(initial=0.0), -velocities.min(initial=0.0)))
-    if not fastest < FASTEST_WIND:
-        raise InputError(str(path), f"holds a wind of {fastest:g} m/s", "the header is damaged")
     return velocities
 
 
