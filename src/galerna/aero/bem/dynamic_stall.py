@@ -19,6 +19,9 @@ Three things are written differently, without changing the model where it holds:
   (alpha_34 - alpha_E) times the circulatory lift, and the lift of the pitch rate normal to
   the chord: that is the drag used here.
 
+Left out is the paper's shift of the moment with the separation point: cm is the polar's at
+alpha_E and the pitch rate's, because the shift divides by a lift that passes zero.
+
 The model describes attached and lightly separated flow from the front. Between
 BLEND_START and BLEND_END of |alpha| its answer fades into the static polar.
 """
