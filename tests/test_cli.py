@@ -189,8 +189,8 @@ def test_the_written_wind_drives_the_same_rotor(case):
 
 
 def test_wind_that_a_file_cannot_hold_is_named(case, capsys):
-    turned = "inflow:\n  direction_deg: 20\n  gust: {kind: EOG, start_s: 1}\n"
-    case.write_text(TURBULENT.replace("inflow:\n", turned))
+    turned = "{direction_deg: 20, gust: {kind: EOG, start_s: 1}, wind_speed_m_s"
+    case.write_text(TURBULENT.replace("{wind_speed_m_s", turned))
     assert galerna("wind", case, "--bts", "w.bts") == 0
     assert "not in the file: direction_deg, gust" in capsys.readouterr().err
 
