@@ -55,6 +55,13 @@ def test_stations_must_rise_within_the_blade(nrel, stations):
         blade_sections(nrel, stations)
 
 
+@pytest.mark.parametrize("stations", [(0.9, 1.0), (0.0, 0.1, 0.2), (0.3, 0.5, 0.7, 0.9)])
+def test_loads_are_not_continued_further_than_the_stations_know(nrel, stations):
+    """Straight lines from two stations at the tip would give nine times the thrust."""
+    with pytest.raises(InputError, match="short of"):
+        blade_sections(nrel, stations)
+
+
 def test_table_reproduces_the_polars_own_points(nrel):
     sections = blade_sections(nrel)
     station = int(np.argmax(sections.span > 0.9))

@@ -98,8 +98,8 @@ def section_coefficients(table, station, angle):  # type: ignore[no-untyped-def]
 def blade_sections(turbine: Turbine, stations: int | ArrayLike | None = None) -> BladeSections:
     """Strips at the turbine's own stations, at a number of equal ones, or at span fractions.
 
-    Raises InputError for stations that do not rise within 0 and 1, zero chord, and polars
-    that cannot be used.
+    Raises InputError for stations that do not rise within 0 and 1 or leave an end of the blade
+    out, zero chord, and polars that cannot be used.
     """
     blade, shape = turbine.blade, turbine.blade.shape
     span = _stations(shape, stations)
@@ -219,6 +219,13 @@ def _stations(shape: BladeShape, stations: int | ArrayLike | None) -> Array:
     span = np.linspace(0.0, 1.0, stations) if isinstance(stations, int) else np.array(stations)
     if span.ndim != 1 or len(span) < 2 or np.any(np.diff(span) <= 0) or span[0] < 0 or span[-1] > 1:
         raise InputError("stations", "at least two span fractions that rise within 0 and 1 needed")
+    for end, gap, spacing in (
+        ("root", span[0], span[1] - span[0]),
+        ("tip", 1.0 - span[-1], span[-1] - span[-2]),
+    ):
+        if gap > spacing + 1e-9:
+            what = f"they stop {gap:.3g} of the span short of the {end}, {spacing:.3g} apart"
+            raise InputError("stations", what, "loads go on straight there: no further than that")
     return span.astype(float)
 
 
