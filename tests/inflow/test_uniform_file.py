@@ -64,6 +64,10 @@ def test_one_row_is_a_steady_wind(tmp_path):
         ("0 8 0 0 0 0.2 0 0\n1 8 0 0 0 0.3 0 0\n", "exponent changes"),
         ("1 8 0 0 0 0.2 0 0\n0 8 0 0 0 0.2 0 0\n", "each later"),
         ("0 nan 0 0 0 0.2 0 0\n1 8 0 0 0 0.2 0 0\n", "not finite"),
+        ("0 8 0 0 0 nan 0 0\n1 8 0 0 0 nan 0 0\n", ":1: holds values that are not finite"),
+        ("0 8 0 0 0 0.2 0 0\n1 8 0 0 0 nan 0 0\n", ":2: holds values that are not finite"),
+        ("0 8 0 0 0 0.2 0 0\n1 -999 0 0 0 0.2 0 0\n", ":2: a wind speed of -999 m/s"),
+        ("0 8 0 0 0 900 0 0\n", "power-law exponent is 900, expected -1 to 2"),
     ],
 )
 def test_complaints(tmp_path, text, complaint):

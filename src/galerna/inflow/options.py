@@ -15,6 +15,8 @@ Fraction = Annotated[FiniteFloat, Field(gt=0.0, le=1.0)]
 Count = Annotated[int, Field(ge=2, le=100_000)]
 Sign = Literal["positive", "negative"]
 
+LEAST_EXPONENT, LARGEST_EXPONENT = -1.0, 2.0  #: of a power law over the height
+
 
 class Block(BaseModel):
     """A part of the case: immutable, and no key that it does not know."""
@@ -65,7 +67,7 @@ class PowerLaw(Block):
     """Mean speed with a power of the height."""
 
     kind: Literal["power_law"]
-    exponent: Annotated[FiniteFloat, Field(ge=-1.0, le=2.0)] = Field(
+    exponent: Annotated[FiniteFloat, Field(ge=LEAST_EXPONENT, le=LARGEST_EXPONENT)] = Field(
         0.2, description="Exponent; IEC 61400-1 takes 0.2 for normal wind on land."
     )
 

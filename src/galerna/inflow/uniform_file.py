@@ -6,6 +6,7 @@ Format: InflowWind manual, "uniform wind files". Its wind direction is positive 
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ import numpy as np
 from galerna.contract import Array
 from galerna.errors import InputError
 from galerna.inflow.mean import TimeSeries
+from galerna.inflow.options import LARGEST_EXPONENT, LEAST_EXPONENT
 from galerna.inflow.storage import open_binary
 from galerna.units import DEG
 
@@ -30,6 +32,9 @@ def read_uniform(path: Path | str, reference_length: float) -> tuple[TimeSeries,
     time, speed, direction, vertical, across, exponent, linear, gust, upflow = rows.T
     if np.ptp(exponent) > 0.0:
         raise InputError(str(path), "the power-law exponent changes over time, which is not read")
+    if not LEAST_EXPONENT <= exponent[0] <= LARGEST_EXPONENT:
+        expected = f"expected {LEAST_EXPONENT:g} to {LARGEST_EXPONENT:g}"
+        raise InputError(str(path), f"the power-law exponent is {exponent[0]:g}, {expected}")
     series = TimeSeries(
         time,
         source=str(path),
@@ -42,6 +47,15 @@ def read_uniform(path: Path | str, reference_length: float) -> tuple[TimeSeries,
         vertical_speed=vertical,
     )
     return series, float(exponent[0])
+
+
+def _check_row(row: list[float], where: str) -> None:
+    if len(row) < COLUMNS:
+        raise InputError(where, f"expected {COLUMNS} numbers, found {len(row)}")
+    if not all(map(math.isfinite, row)):
+        raise InputError(where, "holds values that are not finite numbers")
+    if row[1] < 0.0:
+        raise InputError(where, f"a wind speed of {row[1]:g} m/s, expected 0 or more")
 
 
 def _rows(path: Path | str) -> Array:
@@ -60,9 +74,7 @@ def _rows(path: Path | str) -> Array:
                 what = f"expected {COLUMNS} numbers, found {line.strip()[:60]!r}"
                 raise InputError(f"{path}:{number}", what) from None
             continue  # a title before the first row
-        if len(row) < COLUMNS:
-            what = f"expected {COLUMNS} numbers, found {len(row)}"
-            raise InputError(f"{path}:{number}", what)
+        _check_row(row, f"{path}:{number}")
         rows.append([*row, 0.0][: COLUMNS + 1])
     if not rows:
         raise InputError(str(path), "holds no row of numbers")
