@@ -52,6 +52,18 @@ def test_the_windio_package_accepts_what_is_written(tmp_path: Path) -> None:
     windIO.validate(tmp_path / "out.yaml", "turbine/turbine_schema")
 
 
+def test_a_deck_without_cut_out_and_with_a_rounded_quarter_turn_can_be_written(
+    tmp_path: Path,
+) -> None:
+    """ServoDyn states no cut-out wind speed, and ROSCO's 1.5708 rad are 90.0002 deg."""
+    turbine = load("nrel5mw")
+    control = replace(turbine.control, cut_out_wind_speed=np.inf, maximum_pitch=1.5708)
+    windio.write(replace(turbine, control=control), tmp_path / "out.yaml")
+    found = windio.read(tmp_path / "out.yaml").control
+    assert found.cut_out_wind_speed == 25.0  # windIO's default
+    assert found.maximum_pitch == pytest.approx(np.pi / 2)
+
+
 def test_sections_at_a_twist_of_their_own_are_turned_to_the_aerodynamic_one(
     tmp_path: Path,
 ) -> None:

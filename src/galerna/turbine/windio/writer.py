@@ -17,12 +17,14 @@ from galerna.turbine.windio.yamlfile import Document
 from galerna.units import DEG, RPM
 
 _VERSION = "2.1"
+_LARGEST_PITCH = 90.0  #: deg, that windIO allows; controllers round a quarter turn up
 
 
 def write(turbine: Turbine, path: str | Path) -> None:
     """Write a turbine as a windIO v2 file and NAME.companion.yaml beside it.
 
-    Section matrices are turned to the aerodynamic twist, as windIO wants them.
+    Section matrices are turned to the aerodynamic twist, as windIO wants them; a turbine
+    that states no cut-out wind speed gets windIO's default.
     Raises InputError, and writes nothing, if windIO's schema cannot hold the turbine.
     """
     path = Path(path)
@@ -33,21 +35,11 @@ def write(turbine: Turbine, path: str | Path) -> None:
 
 
 def _document(turbine: Turbine) -> dict[str, Any]:
-    control = turbine.control
     return {
         "windIO_version": _VERSION,
         "name": turbine.name,
         "comments": turbine.description,
-        "assembly": {
-            "drivetrain": "geared" if turbine.drivetrain.gear_ratio > 1.0 else "direct_drive",
-            "rotor_orientation": "Upwind",
-            "number_of_blades": turbine.number_of_blades,
-            "rotor_diameter": 2.0 * turbine.rotor_radius,
-            "hub_height": turbine.hub_height,
-            "rated_power": control.rated_power,
-            "cut_in_wind_speed": control.cut_in_wind_speed,
-            "cut_out_wind_speed": control.cut_out_wind_speed,
-        },
+        "assembly": _assembly(turbine),
         "components": {
             "blade": _blade(turbine.blade, turbine.airfoils),
             "hub": _hub(turbine),
@@ -56,8 +48,24 @@ def _document(turbine: Turbine) -> dict[str, Any]:
             "tower": _tower(turbine.tower),
         },
         "airfoils": [_airfoil(airfoil) for airfoil in turbine.airfoils.values()],
-        "control": _control(control, turbine.drivetrain.gear_ratio),
+        "control": _control(turbine.control, turbine.drivetrain.gear_ratio),
     }
+
+
+def _assembly(turbine: Turbine) -> dict[str, Any]:
+    control = turbine.control
+    document: dict[str, Any] = {
+        "drivetrain": "geared" if turbine.drivetrain.gear_ratio > 1.0 else "direct_drive",
+        "rotor_orientation": "Upwind",
+        "number_of_blades": turbine.number_of_blades,
+        "rotor_diameter": 2.0 * turbine.rotor_radius,
+        "hub_height": turbine.hub_height,
+        "rated_power": control.rated_power,
+        "cut_in_wind_speed": control.cut_in_wind_speed,
+    }
+    if np.isfinite(control.cut_out_wind_speed):
+        document["cut_out_wind_speed"] = control.cut_out_wind_speed
+    return document
 
 
 def _curve(grid: Array, values: Array) -> dict[str, Any]:
@@ -220,7 +228,7 @@ def _control(control: Control, gear_ratio: float) -> dict[str, Any]:
         "max_torque_rate": control.maximum_torque_rate,
         "fine_pitch": control.fine_pitch / DEG,
         "optimal_tsr": control.optimal_tip_speed_ratio,
-        "max_pitch_limit": control.maximum_pitch / DEG,
+        "max_pitch_limit": min(control.maximum_pitch / DEG, _LARGEST_PITCH),
         "max_pitch_rate": control.maximum_pitch_rate / DEG,
         "lpf_frequency": control.speed_filter_frequency,
     }
