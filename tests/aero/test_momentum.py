@@ -198,6 +198,18 @@ def test_thrust_has_no_jump_where_the_wind_turns(table, name, pitch):
     assert induced[1] == pytest.approx(induced[0], abs=0.01)
 
 
+@pytest.mark.parametrize("name", CURVES)
+@pytest.mark.parametrize("guess", [5e-324, -5e-324, 2.2e-309, -1e-200, 0.0])
+def test_an_inflow_angle_next_to_zero_overflows_nothing(table, name, guess):
+    """Where a cylinder stands in a calm, its thrust vanishes with the angle."""
+    for drag in (True, False):
+        options = BemOptions(high_thrust=name, drag_in_axial_induction=drag)
+        answer = solve_strip(
+            guess, table, 0, 0.0, 0.0, 0.0, strip(0.0156, 0.0, 0.0), Momentum.of(options, 3)
+        )
+        assert np.all(np.isfinite(answer))
+
+
 def test_answer_is_continuous_in_the_wind(table):
     """Induced velocity has no jump while the wind rises from nothing to a storm."""
     entry, guess, last = strip(0.04), 0.1, None

@@ -33,6 +33,7 @@ MADSEN = (0.0883, 0.0586, 0.2460)  #: of C_T^3, C_T^2 and C_T
 LOWEST_LOSS = 1e-3  #: keeps the balance finite at the very tip and root
 STANDSTILL = 1e-12  #: of U_n / W; what is below counts as no answer
 SLOWEST = 1e-6  #: m/s; a normal velocity below this counts as this one
+FLATTEST = 1e-15  #: of sin(phi), so that what divides by it stays finite
 TOLERANCE = 1e-10  #: of the residual, which is of order 1
 NARROWEST = 1e-14  #: rad, of a bracket
 PATIENCE = 8  #: evaluations of false position alone
@@ -162,6 +163,7 @@ def balance(
     """
     sigma_normal, sigma_tangential, tip, root, mirror, lift_shift = strip
     sine, cosine = sin(phi), cos(phi)
+    sine = sine if abs(sine) > FLATTEST else FLATTEST
     lift, drag, _ = section_coefficients(table, station, mirror * phi - pitch)
     lift = mirror * (lift + lift_shift)
     loss = 1.0
