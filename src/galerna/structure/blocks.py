@@ -46,12 +46,10 @@ def _transposed_product(rows: int, inner: int, columns: int) -> Callable[[Array,
 
 multiply3 = _product(3, 3, 3)
 multiply6 = _product(6, 6, 6)
-multiply_6_6_12 = _product(6, 6, 12)
 multiply_12_6_12 = _product(12, 6, 12)
 multiply3_transposed = _transposed_product(3, 3, 3)
 multiply6_transposed = _transposed_product(6, 6, 6)
 multiply_12_6_6_transposed = _transposed_product(12, 6, 6)
-multiply_12_6_12_transposed = _transposed_product(12, 6, 12)
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)

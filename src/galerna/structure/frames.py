@@ -2,9 +2,8 @@
 
 A rigid motion is a rotation ``R`` (3,3) and a position ``x`` (3,); a twist or relative
 motion ``d`` (6,) is (translation, rotation). Variations are the body's own:
-``R <- R exp(rotation)``, ``x <- x + R translation``. The operators on SE(3) are polynomials
-in ``ad(d)``, whose eigenvalues are 0 and, twice each, plus and minus i times the angle, so a
-polynomial that agrees with the function and its slope there is the function itself.
+``R <- R exp(rotation)``, ``x <- x + R translation``. A function of ``ad(d)`` on SE(3) is the
+function of the rotation alone, on SO(3), and its derivative along the translation.
 Sources: Sonneville, Cardona and Bruls, Comput. Methods Appl. Mech. Eng. 268 (2014) 451;
 Selig, Geometric Fundamentals of Robotics (2005), ch. 7.
 """
@@ -18,7 +17,7 @@ from numba import njit
 
 from galerna.contract import Array
 
-from .blocks import FAST, apply, multiply3, multiply6
+from .blocks import FAST, multiply3, multiply6
 
 
 def _half_cotangent_series(terms: int) -> list[float]:
@@ -31,10 +30,8 @@ def _half_cotangent_series(terms: int) -> list[float]:
 
 
 _ALTERNATING = [(-1.0) ** k for k in range(18)]
-_B = [sign * b for sign, b in zip(_ALTERNATING, _half_cotangent_series(18), strict=True)]
-_INVERSE_2 = np.array([(k - 2) * _B[k] for k in range(1, 18)])
-_INVERSE_4 = np.array([(k - 1) * _B[k] for k in range(2, 18)])
-_BEND = np.array([-_B[k] for k in range(1, 18)])
+_HALF_COTANGENT = _half_cotangent_series(18)
+_BEND = np.array([-_ALTERNATING[k] * _HALF_COTANGENT[k] for k in range(1, 18)])
 _EVEN = [_ALTERNATING[k] / factorial(2 * k + 1) for k in range(18)]
 _ODD = [-_ALTERNATING[k] / factorial(2 * k + 2) for k in range(18)]
 _TANGENT_1 = np.array([(1 - k) * _ODD[k] for k in range(18)])
@@ -45,13 +42,28 @@ _SERIES_BELOW = 1.0  #: squared angle up to which the inverse tangent is summed 
 
 
 @njit(cache=True, error_model="numpy")
-def _sum(coefficients: Array, s: float) -> tuple[float, float]:
-    """A power series at ``s`` and its derivative."""
-    value = slope = 0.0
+def _sum(coefficients: Array, s: float) -> tuple[float, float, float]:
+    """A power series at ``s``, its derivative and its second derivative."""
+    value = slope = curvature = 0.0
     for k in range(len(coefficients) - 1, -1, -1):
+        curvature = curvature * s + 2.0 * slope
         slope = slope * s + value
         value = value * s + coefficients[k]
-    return value, slope
+    return value, slope, curvature
+
+
+@njit(cache=True, error_model="numpy")
+def _bend(s: float) -> tuple[float, float, float]:
+    """(1 - (t/2) cot(t/2)) / t^2 for t^2 = ``s``, and its two derivatives over s."""
+    if s < _SERIES_BELOW:
+        return _sum(_BEND, s)
+    half = 0.5 * np.sqrt(s)
+    g = half / np.tan(half)
+    slope = (g - g * g - 0.25 * s) / (2.0 * s)
+    curvature = (slope * (1.0 - 2.0 * g) - 0.25) / (2.0 * s) - slope / s
+    value = (1.0 - g) / s
+    first = (-slope - value) / s
+    return value, first, (-curvature - 2.0 * first) / s
 
 
 @njit(cache=True)
@@ -194,12 +206,7 @@ def exp_se3(d: Array) -> tuple[Array, Array]:
 def log_se3(R: Array, x: Array) -> Array:
     """The constant twist (6,) that makes the rigid motion ``R``, ``x``; the inverse of exp_se3."""
     phi = log_so3(R)
-    square = phi[0] ** 2 + phi[1] ** 2 + phi[2] ** 2
-    if square < _SERIES_BELOW:
-        bend, _ = _sum(_BEND, square)
-    else:
-        a, b, _ = _versine_ratios(square)
-        bend = (1.0 - 0.5 * a / b) / square
+    bend, _, _ = _bend(phi[0] ** 2 + phi[1] ** 2 + phi[2] ** 2)
     d = np.empty(6)
     d[:3] = _second_order(-0.5, bend, phi, x)
     d[3:] = phi
@@ -249,51 +256,69 @@ def tangent(d: Array) -> Array:
     return np.eye(6) + odd + even
 
 
-@njit(cache=True, error_model="numpy")
-def _inverse_coefficients(s: float) -> tuple[float, float, float, float]:
-    """Coefficients of ad^2 and ad^4 in the inverse tangent, and their slopes over s = angle^2."""
-    if s < _SERIES_BELOW:
-        a2, a2_slope = _sum(_INVERSE_2, s)
-        a4, a4_slope = _sum(_INVERSE_4, s)
-        return a2, a2_slope, a4, a4_slope
-    half = 0.5 * np.sqrt(s)
-    g = half / np.tan(half)
-    slope = (g - g * g - 0.25 * s) / (2.0 * s)
-    curvature = (slope * (1.0 - 2.0 * g) - 0.25) / (2.0 * s) - slope / s
-    a2 = (2.0 * (1.0 - g) + s * slope) / s
-    a4 = (1.0 - g + s * slope) / (s * s)
-    return a2, curvature - (slope + a2) / s, a4, (curvature - 2.0 * a4) / s
-
-
 @njit(cache=True, error_model="numpy", fastmath=FAST)
 def inverse_tangents(d: Array) -> tuple[Array, Array]:
-    """T(d)^-1 and T(-d)^-1 (6,6), for angles below 2 pi."""
-    a2, _, a4, _ = _inverse_coefficients(d[3] ** 2 + d[4] ** 2 + d[5] ** 2)
-    A = ad(d)
-    A2 = multiply6(A, A)
-    A4 = multiply6(A2, A2)
-    ahead = np.empty((6, 6))
-    behind = np.empty((6, 6))
-    for i in range(6):
-        for j in range(6):
-            even = a2 * A2[i, j] + a4 * A4[i, j]
-            ahead[i, j] = even + 0.5 * A[i, j]
-            behind[i, j] = even - 0.5 * A[i, j]
-        ahead[i, i] += 1.0
-        behind[i, i] += 1.0
+    """T(d)^-1 and T(-d)^-1 (6,6), for angles below 2 pi.
+
+    On SO(3) the inverse is ``1 + hat(phi)/2 + e(phi)`` with the even part ``e = bend(phi^2)
+    (phi phi^T - phi^2 1)``; on SE(3) the derivative of that along the translation couples.
+    """
+    s = d[3] ** 2 + d[4] ** 2 + d[5] ** 2
+    c = d[0] * d[3] + d[1] * d[4] + d[2] * d[5]
+    bend, slope, _ = _bend(s)
+    odd = ad(d)
+    ahead = np.zeros((6, 6))
+    behind = np.zeros((6, 6))
+    for i in range(3):
+        for j in range(3):
+            square = d[3 + i] * d[3 + j]
+            turn = bend * square
+            shift = bend * (d[3 + i] * d[j] + d[i] * d[3 + j]) + 2.0 * slope * c * square
+            if i == j:
+                turn += 1.0 - bend * s
+                shift -= 2.0 * c * (bend + slope * s)
+            half_turn, half_shift = 0.5 * odd[i, j], 0.5 * odd[i, 3 + j]
+            ahead[i, j] = ahead[3 + i, 3 + j] = turn + half_turn
+            behind[i, j] = behind[3 + i, 3 + j] = turn - half_turn
+            ahead[i, 3 + j], behind[i, 3 + j] = shift + half_shift, shift - half_shift
     return ahead, behind
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _next_slope(A: Array, D: Array, y: Array, dual: bool) -> Array:
-    """Slope of ``A z`` over d, for z with the value y and the slope D."""
-    out = bracket_by_twist(y, dual)
-    for i in range(6):
-        for k in range(6):
-            a = A[i, k]
-            for j in range(6):
-                out[i, j] += a * D[k, j]
-    return out
+def _add_even_slope(
+    d: Array, y: Array, k: int, bend: float, slope: float, E: Array, row: int, column: int
+) -> None:
+    """Add the derivative (3,3) of ``e(phi) a`` over phi, for ``a = y[k : k + 3]``."""
+    s = d[3] ** 2 + d[4] ** 2 + d[5] ** 2
+    p = d[3] * y[k] + d[4] * y[k + 1] + d[5] * y[k + 2]
+    for i in range(3):
+        even = 2.0 * slope * (d[3 + i] * p - s * y[k + i]) - 2.0 * bend * y[k + i]
+        for j in range(3):
+            E[row + i, column + j] += bend * d[3 + i] * y[k + j] + even * d[3 + j]
+        E[row + i, column + i] += bend * p
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _add_even_curvature(
+    d: Array, y: Array, k: int, bend: float, slope: float, curvature: float,
+    E: Array, row: int, column: int,
+) -> None:  # fmt: skip
+    """Add the derivative (3,3) along u of that derivative, for ``d = (u, phi)``."""
+    s = d[3] ** 2 + d[4] ** 2 + d[5] ** 2
+    c = d[0] * d[3] + d[1] * d[4] + d[2] * d[5]
+    p = d[3] * y[k] + d[4] * y[k + 1] + d[5] * y[k + 2]
+    q = d[0] * y[k] + d[1] * y[k + 1] + d[2] * y[k + 2]
+    for i in range(3):
+        phi, u, a = d[3 + i], d[i], y[k + i]
+        even = phi * p - s * a
+        by_phi = 4.0 * c * (curvature * even - slope * a) + 2.0 * slope * (
+            u * p + phi * q - 2.0 * c * a
+        )
+        by_u = 2.0 * (slope * even - bend * a)
+        by_a = 2.0 * c * slope * phi + bend * u
+        for j in range(3):
+            E[row + i, column + j] += by_a * y[k + j] + by_phi * d[3 + j] + by_u * d[j]
+        E[row + i, column + i] += 2.0 * c * slope * p + bend * q
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
@@ -303,20 +328,11 @@ def inverse_tangent_slope(d: Array, y: Array, dual: bool) -> Array:
     ``dual``: of the transposed operator and a wrench y instead. With the odd part, the
     derivative of ``T(+-d)^-1 y`` is this plus or minus half ``bracket_by_twist(y, dual)``.
     """
-    a2, a2_slope, a4, a4_slope = _inverse_coefficients(d[3] ** 2 + d[4] ** 2 + d[5] ** 2)
-    A = ad(d)
-    if dual:
-        A = A.T.copy()
-    y1 = apply(A, y)
-    y2 = apply(A, y1)
-    y3 = apply(A, y2)
-    y4 = apply(A, y3)
-    D2 = _next_slope(A, bracket_by_twist(y, dual), y1, dual)
-    D4 = _next_slope(A, _next_slope(A, D2, y2, dual), y3, dual)
-    for i in range(6):
-        change = 2.0 * (a2_slope * y2[i] + a4_slope * y4[i])
-        for j in range(6):
-            D2[i, j] = a2 * D2[i, j] + a4 * D4[i, j]
-        for j in range(3, 6):
-            D2[i, j] += change * d[j]
-    return D2
+    bend, slope, curvature = _bend(d[3] ** 2 + d[4] ** 2 + d[5] ** 2)
+    E = np.zeros((6, 6))
+    coupled, row = (0, 3) if dual else (3, 0)  # what meets both parts of the operator, and where
+    _add_even_slope(d, y, coupled, bend, slope, E, row, 0)
+    _add_even_slope(d, y, coupled, bend, slope, E, 3 - row, 3)
+    _add_even_slope(d, y, 3 - coupled, bend, slope, E, row, 3)
+    _add_even_curvature(d, y, coupled, bend, slope, curvature, E, row, 3)
+    return E

@@ -25,10 +25,8 @@ from .blocks import (
     multiply3_transposed,
     multiply6,
     multiply6_transposed,
-    multiply_6_6_12,
     multiply_12_6_6_transposed,
     multiply_12_6_12,
-    multiply_12_6_12_transposed,
 )
 from .frames import adjoint, bracket_by_twist, inverse_tangent_slope, inverse_tangents, log_se3
 
@@ -89,18 +87,13 @@ def _end(
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _over_nodes(
-    ahead: Array, behind: Array, carry_a: Array, carry_b: Array, has_offset: bool
-) -> Array:
-    """The direction P (6,12) in the nodes' variations."""
-    P = np.empty((6, 12))
-    if has_offset:
-        P[:, :6] = -multiply6(behind, carry_a)
-        P[:, 6:] = multiply6(ahead, carry_b)
-    else:
-        P[:, :6] = -behind
-        P[:, 6:] = ahead
-    return P
+def _beside(left: Array, right: Array) -> Array:
+    """Two blocks (6,6) side by side."""
+    out = np.empty((6, 12))
+    for i in range(6):
+        for j in range(6):
+            out[i, j], out[i, 6 + j] = left[i, j], right[i, j]
+    return out
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
@@ -109,30 +102,27 @@ def _turning_of_wrench(
 ) -> Array:
     """Derivative (12,6) over d of the node wrenches ``P.T @ wrench`` at a constant wrench."""
     even = inverse_tangent_slope(d, wrench, True)
-    odd = 0.5 * bracket_by_twist(wrench, True)
-    G = np.empty((12, 6))
+    odd = bracket_by_twist(wrench, True)
+    on_a, on_b = np.empty((6, 6)), np.empty((6, 6))
+    for i in range(6):
+        for j in range(6):
+            on_a[i, j] = 0.5 * odd[i, j] - even[i, j]
+            on_b[i, j] = 0.5 * odd[i, j] + even[i, j]
     if has_offset:
-        G[:6] = multiply6_transposed(carry_a, odd - even)
-        G[6:] = multiply6_transposed(carry_b, odd + even)
-    else:
-        G[:6] = odd - even
-        G[6:] = odd + even
+        on_a, on_b = multiply6_transposed(carry_a, on_a), multiply6_transposed(carry_b, on_b)
+    G = np.empty((12, 6))
+    for i in range(6):
+        for j in range(6):
+            G[i, j], G[6 + i, j] = on_a[i, j], on_b[i, j]
     return G
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _damping_tangent(
-    pairs: Pairs, e: int, d: Array, P: Array, va: Array, vb: Array, velocity_tangent: Array
-) -> tuple[Array, Array]:
-    """What damping adds to the law (6,6) over d, and the rest of its tangent (12,12)."""
-    by_motion = inverse_tangent_slope(d, vb - va, False)
-    by_motion += 0.5 * bracket_by_twist(va + vb, False)
-    moving = np.empty((6, 12))
-    moving[:, :6] = multiply6(P[:, :6], velocity_tangent[pairs.ends[e, 0]])
-    moving[:, 6:] = multiply6(P[:, 6:], velocity_tangent[pairs.ends[e, 1]])
-    damping = pairs.damping[e]
-    rest = multiply_12_6_12_transposed(P, multiply_6_6_12(damping, moving))
-    return multiply6(damping, by_motion), rest
+def _damping_law(d: Array, va: Array, vb: Array, damping: Array) -> Array:
+    """Derivative (6,6) over d of the damping wrench at constant twists of the two frames."""
+    rate_by_motion = inverse_tangent_slope(d, vb - va, False)
+    rate_by_motion += 0.5 * bracket_by_twist(va + vb, False)
+    return multiply6(damping, rate_by_motion)
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
@@ -154,16 +144,23 @@ def _answer_all(
             wrench += apply(pairs.damping[e], rate)
         if np.isnan(out.carried[e, 0]):
             out.carried[e] = wrench
-        P = _over_nodes(ahead, behind, carry_a, carry_b, has_offset)
+        by_a, by_b = -behind, ahead
+        if has_offset:
+            by_a, by_b = multiply6(by_a, carry_a), multiply6(by_b, carry_b)
+        P = _beside(by_a, by_b)
         G = _turning_of_wrench(d, out.carried[e], carry_a, carry_b, has_offset)
         law = pairs.stiffness[e]
         if damped:
-            more, rest = _damping_tangent(pairs, e, d, P, va, vb, velocity_tangent)
-            law = law + more
+            law = law + _damping_law(d, va, vb, pairs.damping[e])
         G += multiply_12_6_6_transposed(P, law)
-        out.tangent[e] = multiply_12_6_12(G, P)
+        S = multiply_12_6_12(G, P)
         if damped:
-            out.tangent[e] += rest
+            by_velocity = _beside(
+                multiply6(by_a, velocity_tangent[pairs.ends[e, 0]]),
+                multiply6(by_b, velocity_tangent[pairs.ends[e, 1]]),
+            )
+            S += multiply_12_6_12(multiply_12_6_6_transposed(P, pairs.damping[e]), by_velocity)
+        out.tangent[e] = S
         out.motion[e], out.rate[e], out.wrench[e] = d, rate, wrench
         out.node_wrench[e] = apply_transposed(P, wrench)
         out.direction[e] = P
