@@ -338,9 +338,12 @@ def test_what_the_file_lacks_is_noted(part: str, key: str, said: str, tmp_path: 
     assert any(note.startswith(said) for note in read(tmp_path, data).notes)
 
 
-def test_version_one_is_refused_with_the_converter(tmp_path: Path) -> None:
+@pytest.mark.parametrize("version", [None, "1.0"])
+def test_version_one_is_refused_with_the_converter(tmp_path: Path, version: str | None) -> None:
     data = document()
     del data["windIO_version"]
+    if version:
+        data["windIO_version"] = version
     with pytest.raises(InputError, match="v1p0_to_v2p0"):
         read(tmp_path, data)
 

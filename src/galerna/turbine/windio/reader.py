@@ -18,6 +18,10 @@ from galerna.turbine.windio.tower import read_tower
 from galerna.units import DEG
 
 _FOUNDATIONS = ("monopile", "jacket", "floating_platform", "mooring")
+_CONVERTER = (
+    "convert it in Python: from windIO.converters.windIO2windIO import v1p0_to_v2p0; "
+    "v1p0_to_v2p0('OLD.yaml', 'NEW.yaml').convert()"
+)
 _HUB_HEIGHT_TOLERANCE = 0.005  # of the hub height: what files round away
 
 
@@ -39,14 +43,15 @@ def _refuse_other_versions(document: Block) -> None:
     if version is None and "components" in document.data:
         raise document.error(
             "is a windIO v1 file, or a v2 file without its windIO_version; galerna reads v2",
-            "convert it in Python: from windIO.converters.windIO2windIO import v1p0_to_v2p0; "
-            "v1p0_to_v2p0('OLD.yaml', 'NEW.yaml').convert()",
+            _CONVERTER,
         )
     if version is None:
         what = "is not a windIO turbine file: it has neither windIO_version nor components"
         raise document.error(what)
-    if str(version).split(".")[0] != "2":
-        raise document.error(f"windIO version {version}; galerna reads 2.x", "", "windIO_version")
+    major = str(version).split(".")[0]
+    if major != "2":
+        hint = _CONVERTER if major == "1" else ""
+        raise document.error(f"windIO version {version}; galerna reads 2.x", hint, "windIO_version")
 
 
 def _turbine(document: Block, companion: Companion, notes: list[str]) -> Turbine:
