@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from math import floor
 
 import numpy as np
 from scipy.integrate import quad
@@ -68,8 +69,8 @@ def hinge(
 ) -> Joint:
     """Rotation about ``axis`` (3,) alone: free, or with ``angle`` rad or ``speed`` rad/s of time.
 
-    A free one may have a torsion spring N m/rad and damper N m s/rad; a torque is set with
-    ``System.set_torque``.
+    A free one may have a damper N m s/rad and a torsion spring N m/rad, which knows its angle
+    within half a turn; a torque is set with ``System.set_torque``.
     """
     K, D = np.zeros((6, 6)), np.zeros((6, 6))
     K[5, 5], D[5, 5] = stiffness, damping
@@ -109,9 +110,16 @@ def on_path(
 ) -> Joint:
     """A frame that follows ``path``: time -> global position (3,) m and rotation (3,3).
 
-    ``locked`` leaves some components free, in the path's axes.
+    A frame that stands off the path at time 0 keeps its place in the path's axes. ``locked``
+    leaves some components free, in these axes.
     """
-    return Joint(name, ground, frame, np.zeros(3), np.eye(3), locked, placement=path)
+    start, axes = path(0.0)
+
+    def travelled(time: float) -> tuple[Array, Array]:
+        x, R = path(time)
+        return axes.T @ (x - start), axes.T @ R
+
+    return Joint(name, ground, frame, start, axes, locked, placement=travelled)
 
 
 def turning(angle: Angle) -> Path:
@@ -120,8 +128,25 @@ def turning(angle: Angle) -> Path:
 
 
 def integral(speed: Angle) -> Angle:
-    """The angle rad that a speed rad/s has turned since time 0."""
-    return lambda time: float(quad(speed, 0.0, time, limit=200)[0])
+    """The angle rad that a speed rad/s has turned since time 0.
+
+    It is summed second by second to rounding: accelerations divide its error by the square
+    of the time step.
+    """
+
+    turned = [0.0]  # after whole seconds
+
+    def piece(start: float, end: float) -> float:
+        return float(quad(speed, start, end, epsabs=1e-14, epsrel=0.0, limit=200, full_output=1)[0])
+
+    def angle(time: float) -> float:
+        whole = max(floor(time), 0)
+        while len(turned) <= whole:
+            k = len(turned) - 1
+            turned.append(turned[k] + piece(k, k + 1))
+        return turned[whole] + piece(whole, time)
+
+    return angle
 
 
 def axes_along(axis: Array) -> Array:
