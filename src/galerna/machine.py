@@ -51,6 +51,10 @@ class Machine:
         start = f"rotor speed {speed[0] / RPM:.4g} rpm, pitch {pitch[0] / DEG:.4g} deg"
         yield "operation", f"{start}{' at the start' if len(speed) + len(pitch) > 2 else ''}"
         yield "loads", ", ".join(simulation.load_models)
+        if "bodies" in simulation.load_models and not any(self.turbine.nacelle.drag_area):
+            yield "note", "the turbine has no drag areas of the nacelle: the tower alone has drag"
+        for note in self.turbine.notes:
+            yield "note", note
         steps = round(case.duration_s / case.time_step_s)
         yield "records", f"{len(self.channels)} of {len(simulation.channels)} channels"
         yield "time", f"{case.duration_s:g} s in {steps} steps of {case.time_step_s:g} s"
@@ -168,10 +172,10 @@ class HubWindProbe:
     """The undisturbed wind on the tower axis at the hub's height, as channels."""
 
     channels = (
-        Channel("wind_speed", "m/s", "wind speed at hub height", (), "WindHubVelMag", "m/s"),
-        Channel("wind_x", "m/s", "wind along x at hub height", (), "WindHubVelX", "m/s"),
-        Channel("wind_y", "m/s", "wind along y at hub height", (), "WindHubVelY", "m/s"),
-        Channel("wind_z", "m/s", "wind along z at hub height", (), "WindHubVelZ", "m/s"),
+        Channel("wind_speed", "m/s", "wind speed at hub height", (), "Wind1VelMag", "m/s"),
+        Channel("wind_x", "m/s", "wind along x at hub height", (), "Wind1VelX", "m/s"),
+        Channel("wind_y", "m/s", "wind along y at hub height", (), "Wind1VelY", "m/s"),
+        Channel("wind_z", "m/s", "wind along z at hub height", (), "Wind1VelZ", "m/s"),
     )
 
     def __init__(self, wind: WindField) -> None:

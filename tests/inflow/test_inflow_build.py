@@ -163,6 +163,11 @@ def test_hawc2_files_scaled_to_an_intensity(tmp_path):
     }
     wind = built(folder=tmp_path, wind_speed_m_s=14, turbulence=turbulence)
     assert mean_deviation(wind.field.box) == pytest.approx(0.15 * 14, rel=1e-5)
+    assert wind.field.box.bottom == pytest.approx(90 - 100)  # centred on the hub
+    lower = built(
+        folder=tmp_path, wind_speed_m_s=14, turbulence=turbulence | {"bottom_m": -12.5}
+    ).field.box
+    assert lower.bottom == pytest.approx(-12.5)
 
 
 def test_uniform_file_brings_its_exponent(tmp_path):

@@ -7,7 +7,6 @@ import pytest
 from scipy.special import hyp2f1, kv
 
 from galerna.inflow import mann_tensor as tensor_module
-from galerna.inflow.iec import extreme_turbulence, extreme_wind_deviation, normal_turbulence
 from galerna.inflow.mann_tensor import eddy_lifetime, mann_tensor
 from galerna.inflow.spectra import (
     ISOTROPIC_VARIANCE,
@@ -145,10 +144,3 @@ def test_kaimal_coherence_decay():
     """12 ((f r/V)^2 + (0.12 r/L_c)^2)^1/2, L_c = 340.2 m over 60 m height."""
     assert kaimal_coherence_decay(0.0, 12.0, 90.0) == pytest.approx(12 * 0.12 / 340.2)
     assert kaimal_coherence_decay(1.0, 12.0, 90.0) == pytest.approx(1.0, rel=1e-4)
-
-
-def test_extreme_models_give_the_deviations_of_the_standard():
-    """Class I-A at 20 m/s: 2 * 0.16 (0.072 (5 + 3)(10 - 4) + 10) = 4.306 m/s."""
-    assert extreme_turbulence(20.0, "I", "A") == pytest.approx(4.30592)
-    assert extreme_turbulence(12.0, "I", "A") > normal_turbulence(12.0, "A")
-    assert extreme_wind_deviation(50.0) == pytest.approx(5.5)

@@ -171,6 +171,8 @@ def _from_hawc2(files: o.Hawc2Files, mean_speed: float, site: Site) -> Box:
         hub_height=site.rotor.hub_height,
         first_row=files.first_row,
     )
+    if files.bottom_m is not None:
+        box = box.standing_on(files.bottom_m)
     if files.turbulence_intensity is None:
         return box
     found = mean_deviation(box)

@@ -27,17 +27,3 @@ def longitudinal_scale(hub_height: float) -> float:
 def yearly_extreme_speed(turbine_class: TurbineClass) -> float:
     """Steady extreme wind speed V_e1 m/s at hub height, once a year (6.3.2.1)."""
     return 0.8 * 1.4 * REFERENCE_SPEED[turbine_class]
-
-
-def extreme_turbulence(
-    hub_speed: float, turbine_class: TurbineClass, turbulence_class: TurbulenceClass
-) -> float:
-    """Standard deviation sigma_1 m/s of the extreme turbulence model (6.3.2.3, eq. 19)."""
-    c, average = 2.0, 0.2 * REFERENCE_SPEED[turbine_class]
-    intensity = REFERENCE_INTENSITY[turbulence_class]
-    return c * intensity * (0.072 * (average / c + 3.0) * (hub_speed / c - 4.0) + 10.0)
-
-
-def extreme_wind_deviation(hub_speed: float) -> float:
-    """Standard deviation sigma_1 m/s of the turbulent extreme wind model (6.3.2.1, eq. 16)."""
-    return 0.11 * hub_speed

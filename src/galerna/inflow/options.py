@@ -235,6 +235,9 @@ class Hawc2Files(Turbulence):
         description="Side, looking downwind, of the first row across in the file: right as Mann's "
         "generators write it, left as InflowWind reads it.",
     )
+    bottom_m: float | None = Field(
+        None, description="Height of the lowest row; if not given, the box is centred on the hub."
+    )
     turbulence_intensity: Fraction | None = Field(
         None, description="Scale the box so that the deviation of u is this times the mean speed."
     )
