@@ -83,6 +83,34 @@ def test_the_start_fits_the_joints():
         with_initial_accelerations(system, state)
 
 
+def test_a_fast_start_of_two_bars_is_measured_exactly():
+    """Accelerations of two hinged bars that turn at 40 and 10 rad/s: centripetal alone."""
+    s = Structure((0.0, 0.0, 0.0))
+    elbow = np.array([1.0, 0.0, 0.0])
+    s.frame("one", np.zeros(3), mass=rigid_body(2.0, [0.5, 0, 0], np.ones(3)))
+    s.frame("two", elbow, mass=rigid_body(1.0, None, np.ones(3)))
+    s.join(hinge("shoulder", "ground", "one", np.zeros(3), Y))
+    s.join(hinge("elbow", "one", "two", elbow, Y))
+    system = s.build()
+    state = system.initial_state()
+    state.velocity[1, 4], state.velocity[2, 4], state.velocity[2, 2] = 40.0, 10.0, -40.0
+    state = with_initial_accelerations(system, state)
+    assert np.allclose(state.motion(np.array([2])).acceleration, [-1600.0, 0, 0], atol=1e-2)
+
+
+def test_the_start_feels_the_mass_of_a_load():
+    """Water that answers an acceleration: the load's mass block takes part."""
+    s = Structure((0.0, 0.0, -10.0))
+    turn = rotation_about(0, 0.7)
+    s.frame("float", np.zeros(3), turn, mass=rigid_body(1.0, None, np.ones(3)))
+    system = s.build()
+    forces = Forces.none(2)
+    forces.mass = np.zeros((2, 6, 6))
+    forces.mass[1] = np.diag([0.0, 0.0, 3.0, 1.0, 1.0, 1.0])
+    start = with_initial_accelerations(system, system.initial_state(), forces)
+    assert np.allclose(start.motion(np.array([1])).acceleration, [0, 0, -2.5], atol=1e-12)
+
+
 def test_free_flight_keeps_momentum_and_energy():
     """A soft coupled beam thrown and turning: momentum drift falls at second order."""
     s = Structure((0.0, 0.0, 0.0))
@@ -217,6 +245,23 @@ def test_a_restart_gives_the_same_bits(tmp_path):
     assert resumed.velocity.tobytes() == straight_on.velocity.tobytes()
     with pytest.raises(InputError, match="frames"):
         load(pendulum(), tmp_path / "half.npz")
+
+
+@pytest.mark.parametrize("keep", [0, 400])
+def test_a_damaged_checkpoint_is_refused(tmp_path, keep):
+    system, path = pendulum(), tmp_path / "state"
+    save(system.initial_state(), path)
+    assert load(system, path).time == 0.0
+    path.write_bytes(path.read_bytes()[:keep])
+    with pytest.raises(InputError, match="not a checkpoint"):
+        load(system, path)
+
+
+@pytest.mark.parametrize("dt", [0.0, -0.01, np.nan, np.inf])
+def test_a_step_must_go_forward(dt):
+    system = pendulum()
+    with pytest.raises(InputError, match="time step"):
+        Integrator(system).step(system.initial_state(), dt)
 
 
 def test_an_impossible_step_says_when_and_where():

@@ -7,11 +7,11 @@ from galerna.errors import ConvergenceError, InputError
 from galerna.structure.assembly import Structure
 from galerna.structure.beam import discretise, nodal_loads, straight, uniform
 from galerna.structure.bodies import rigid_body
-from galerna.structure.joints import hinge, rigid
+from galerna.structure.joints import ALL, Joint, hinge, rigid
 from galerna.structure.statics import static_equilibrium
 from galerna.structure.system import Forces
 
-from .models import cantilever, coupled_sections
+from .models import ALONG_X, cantilever, coupled_sections
 
 INERTIA = np.array([1.0, 1.0, 1.0, 1e-3, 1e-3, 1e-3])
 SLENDER = uniform(np.array([1e10, 1e10, 1e10, 1e6, 1e6, 1e6]), INERTIA)
@@ -85,6 +85,22 @@ def test_the_root_carries_the_load():
     assert np.allclose(root[3:], np.cross(x, [0, 1e3, 0]), atol=1e-3)
 
 
+def test_the_loads_of_a_beam_off_its_frame_are_its_sections():
+    """A beam that starts 2 m from the frame that carries it, in axes of its own."""
+    s = Structure((0.0, 0.0, 0.0))
+    s.frame("hub", [1.0, 0.0, 0.0], mass=rigid_body(1.0, None, np.ones(3)))
+    s.join(rigid("weld", "ground", "hub", np.array([1.0, 0.0, 0.0])))
+    root = np.array([3.0, 0.0, 0.0])
+    names = s.beam("beam", discretise(straight(root, ALONG_X, 10.0), 10.0, SLENDER,
+                                      np.linspace(0, 1, 3)), root="hub")  # fmt: skip
+    system = s.build()
+    forces = Forces.none(len(system))
+    forces.dead[s.index(names[-1]), 1] = 1.0
+    state = static_equilibrium(system, loads=forces)
+    at_root = system.internal_loads(state, "beam")[0]
+    assert np.allclose(at_root, [0, 1, 0, -10, 0, 0], atol=1e-3)
+
+
 def test_steady_rotation_of_a_bar_pulls_as_it_should():
     """Root tension m omega^2 L^2 / 2 of a bar that turns about its root."""
     s = Structure((0.0, 0.0, 0.0))
@@ -117,6 +133,17 @@ def test_contradicting_joints_are_named():
         s.build()
 
 
+def test_driven_joints_that_agree_are_redundant_and_not_contradicting():
+    """Both shift the bar by 0.1 m, one of them with an arm of 10 m."""
+    s = Structure()
+    s.frame("bar", [0.0, 0, 0], mass=rigid_body(1.0, None, np.ones(3)))
+    for name, y in (("left", 0.0), ("right", 10.0)):
+        s.join(Joint(name, "ground", "bar", np.array([0.0, y, 0.0]), locked=ALL,
+                     placement=lambda t: (np.array([0.1, 0.0, 0.0]), np.eye(3))))  # fmt: skip
+    with pytest.raises(InputError, match=r"left, right.*hold the same motion twice"):
+        s.build()
+
+
 def test_a_loose_structure_is_an_error_that_says_where():
     s = Structure()
     s.frame("brick", [0.0, 0, 0], mass=rigid_body(1.0, None, np.ones(3)))
@@ -128,6 +155,10 @@ def test_bad_input_is_named():
     s = Structure()
     with pytest.raises(InputError, match="did you mean 'ground'"):
         s.join(rigid("weld", "grund", "ground", np.zeros(3)))
+    s.frame("brick", [0.0, 0, 0], mass=rigid_body(1.0, None, np.ones(3)))
+    s.join(rigid("weld", "ground", "brick", np.zeros(3)))
+    with pytest.raises(InputError, match="weld: there is a joint of this name already"):
+        s.join(hinge("weld", "ground", "brick", np.zeros(3), np.ones(3)))
     s.frame("ghost", [0.0, 0, 0])
     with pytest.raises(InputError, match="ghost"):
         s.build()

@@ -86,7 +86,9 @@ class Structure:
         return names
 
     def join(self, joint: Joint) -> None:
-        """Add a joint or spring."""
+        """Add a joint or spring; raises InputError where its name is taken."""
+        if any(pair["name"] == joint.name for pair in self._pairs):
+            raise InputError(joint.name, "there is a joint of this name already", "choose another")
         places = [
             self.place(frame, joint.position, joint.axes) for frame in (joint.first, joint.second)
         ]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -12,9 +13,10 @@ from .system import ARRAYS, State, System
 
 
 def save(state: State, path: Path) -> None:
-    """Write everything the next step depends on to an .npz file."""
+    """Write everything the next step depends on to a file in NumPy's .npz format."""
     arrays = {name: getattr(state, name) for name in ARRAYS}
-    np.savez(path, allow_pickle=False, time=np.array(state.time), **arrays)
+    with Path(path).open("wb") as file:
+        np.savez(file, allow_pickle=False, time=np.array(state.time), **arrays)
 
 
 def load(system: System, path: Path) -> State:
@@ -23,7 +25,7 @@ def load(system: System, path: Path) -> State:
     try:
         with np.load(path) as file:
             found = {name: file[name] for name in ("time", *ARRAYS)}
-    except (OSError, ValueError, KeyError) as error:
+    except (OSError, EOFError, BadZipFile, TypeError, ValueError, KeyError) as error:
         raise InputError(str(path), f"not a checkpoint of a structure: {error}") from error
     for name in ARRAYS:
         shape = getattr(expected, name).shape

@@ -11,12 +11,13 @@ from galerna.contract import Array
 from galerna.errors import InputError
 
 from .frames import exp_se3
-from .system import Forces, State, System
+from .system import Forces, State, System, in_body_axes
 
 
 def with_initial_accelerations(system: System, state: State, forces: Forces | None = None) -> State:
     """The state with accelerations and multipliers that fit its positions and velocities.
 
+    ``forces`` are those of body twists that stay constant; their mass blocks take part.
     Raises InputError, with the joint named, where the velocities violate a constraint.
     """
     n = len(system)
@@ -25,8 +26,11 @@ def with_initial_accelerations(system: System, state: State, forces: Forces | No
     identity = np.tile(np.eye(6), (n, 1, 1))
     rates, accelerations = _along_the_flow(system, rest, 1e-3)
     _check_velocities(system, rest, rates)
-    balance = system.balance(rest, forces or Forces.none(n), system.still(), identity)
+    forces = forces or Forces.none(n)
+    balance = system.balance(rest, forces, system.still(), identity)
     balance.nodes = system.mass.copy()
+    if forces.mass is not None:
+        balance.nodes += in_body_axes(forces.mass, rest.rotation)
     balance.pairs.tangent[:] = 0.0
     balance.pairs.motion[:] = accelerations[: len(system.pairs.ends)]
     if balance.rows is not None:
@@ -49,7 +53,11 @@ def velocity_violation(system: System, state: State) -> float:
 
 
 def _along_the_flow(system: System, state: State, step: float) -> tuple[Array, Array]:
-    """First and second rate of all constrained motions while the body twists stay constant."""
+    """First and second rate of all constrained motions while the body twists stay constant.
+
+    By central differences over ``step`` s, or the time in which a frame turns by as many rad.
+    """
+    step /= max(1.0, float(np.abs(state.velocity[:, 3:]).max()))
     values = []
     for sign in (-1.0, 0.0, 1.0):
         moved = state.copy()

@@ -147,7 +147,7 @@ def _settle(increment: Array, x0: Array, R0: Array, x: Array, R: Array) -> None:
 class Integrator:
     """Steps a system through time with one scheme.
 
-    ``iterations`` and ``largest_residual`` describe the last step.
+    ``iterations`` is the number that the last step took.
     """
 
     system: System
@@ -160,8 +160,11 @@ class Integrator:
         """The state one ``dt`` s later; a step that does not converge is taken in halves.
 
         ``loads`` is asked for the forces at each trial state. Raises ConvergenceError
-        with the frame of the largest residual when the halves fail too.
+        with the frame of the largest residual when the halves fail too, InputError for a
+        step that is not a positive time.
         """
+        if not 0.0 < dt < np.inf:
+            raise InputError("time step", f"{dt:g} s is not a positive time")
         for halving in range(self.halvings + 1):
             pieces = 2**halving
             try:

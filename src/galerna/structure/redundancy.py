@@ -16,7 +16,8 @@ def check_constraints(system: System) -> None:
     names, directions, violation = _all_directions(system)
     if not names:
         return
-    scaled = directions / np.maximum(np.linalg.norm(directions, axis=1), 1e-300)[:, None]
+    length = np.maximum(np.linalg.norm(directions, axis=1), 1e-300)
+    scaled = directions / length[:, None]
     left, values, _ = svd(scaled, full_matrices=True)
     rank = int((values > 1e-9 * values[0]).sum())
     if rank == len(names):
@@ -24,7 +25,7 @@ def check_constraints(system: System) -> None:
     combination = left[:, rank:]
     involved = np.abs(combination).max(axis=1) > 1e-6
     joints = list(dict.fromkeys(name for name, yes in zip(names, involved, strict=True) if yes))
-    clash = np.abs(combination.T @ violation).max() > 1e-8
+    clash = np.abs(combination.T @ (violation / length)).max() > 1e-8
     raise InputError(
         ", ".join(joints),
         f"these joints {'contradict each other' if clash else 'hold the same motion twice'} "

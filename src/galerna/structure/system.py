@@ -280,6 +280,9 @@ class System:
             beams = {name.partition(":")[0] for name in self.pair_names if ":" in name}
             raise InputError(beam, "no such beam", did_you_mean(beam, beams))
         wrench = self.pair_answer(state).node_wrench[elements]
+        root = elements[0]
+        place = self.pairs.offset_rotation[root, 0], self.pairs.offset_position[root, 0]
+        wrench[0, :6] = adjoint(*place).T @ wrench[0, :6]
         return np.vstack([-wrench[:, :6], wrench[-1:, 6:]])
 
     def pair_motion(self, state: State) -> Array:
@@ -325,19 +328,23 @@ def _add_load_tangents(
     """Add stiff loads' blocks, turned from global into body axes."""
     if forces.stiffness is None and forces.damping is None and forces.mass is None:
         return
-    turn = np.zeros((len(R), 6, 6))
-    turn[:, :3, :3] = turn[:, 3:, 3:] = R
-    back = turn.transpose(0, 2, 1)
     if forces.stiffness is not None:
-        nodes += back @ forces.stiffness @ turn
+        nodes += in_body_axes(forces.stiffness, R)
     # a variation turns the body's axes, in which v is given, and with them the global velocity
-    rotated = np.zeros_like(turn)
+    rotated = np.zeros_like(nodes)
     rotated[:, :3, 3:] = -hats(v[:, :3])
     rotated[:, 3:, 3:] = -hats(v[:, 3:])
     if forces.damping is not None:
-        nodes += back @ forces.damping @ turn @ (velocity_tangent + rotated)
+        nodes += in_body_axes(forces.damping, R) @ (velocity_tangent + rotated)
     if forces.mass is not None:
-        nodes += back @ forces.mass @ turn @ acceleration_tangent
+        nodes += in_body_axes(forces.mass, R) @ acceleration_tangent
+
+
+def in_body_axes(blocks: Array, R: Array) -> Array:
+    """Blocks (n,6,6) given in global axes, in the axes of the frames."""
+    turn = np.zeros((len(R), 6, 6))
+    turn[:, :3, :3] = turn[:, 3:, 3:] = R
+    return turn.transpose(0, 2, 1) @ blocks @ turn
 
 
 def hats(a: Array) -> Array:
