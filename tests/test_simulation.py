@@ -95,6 +95,22 @@ def test_a_step_that_never_converges_stops_with_time_and_part():
         simulation.run(1.0)
 
 
+def test_a_step_that_fails_half_way_leaves_nothing_of_itself():
+    class Tiring(Restless):
+        def balance(self, loads):
+            return self._time < 0.15 and super().balance(loads)
+
+    model = Spring()
+    simulation = spinning(model, structure=Tiring)
+    simulation.advance()
+    before = simulation.state()
+    with pytest.raises(ConvergenceError, match="no balance"):
+        simulation.advance()
+    after = simulation.state()
+    assert model.calls.count("end") > 4  # some of its halves had been accepted
+    assert all(np.array_equal(before[key], after[key]) for key in before)
+
+
 def test_a_load_that_is_not_a_number_is_named_at_once():
     blade = Stations("blade2", np.array([0.0, 0.5, 1.0]))
     model = Spring((blade,), fail_at=0.25)

@@ -8,6 +8,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from galerna.kernel_cache import drop_stale_kernels
+
 if TYPE_CHECKING:
     from galerna.aero.bem.steady import performance_surface, power_curve, steady_rotor
     from galerna.case import Case
@@ -39,6 +41,8 @@ __all__ = [
     "to_outb",
     "turbine_names",
 ]
+
+drop_stale_kernels()
 
 #: where each public name lives, and its name there
 _HOMES = {

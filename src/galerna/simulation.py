@@ -118,15 +118,17 @@ class Simulation:
     def run(self, end: float, callbacks: Sequence[Callback] = ()) -> None:
         """March to the step nearest to ``end`` s, or until something calls ``stop``."""
         last = round(end / self.time_step)
-        for callback in callbacks:
-            callback.start(self, last * self.time_step)
+        started: list[Callback] = []
         try:
+            for callback in callbacks:
+                callback.start(self, last * self.time_step)
+                started.append(callback)
             while self.steps < last and not self.stopped:
                 self.advance()
                 for callback in callbacks:
                     callback.accepted(self)
         finally:
-            for callback in callbacks:
+            for callback in started:
                 callback.finish(self)
 
     def stop(self, reason: str) -> None:
@@ -172,12 +174,21 @@ class Simulation:
             if halvings == 0 or isinstance(error, LoadsNotFiniteError):
                 raise
             self.structure.reject(time)
-            self._step(time, 0.5 * dt, halvings - 1)
-            self._step(time + 0.5 * dt, 0.5 * dt, halvings - 1)
+            self._halve(time, 0.5 * dt, halvings - 1)
             return
         for _, model, motion in self._models:
             model.end_step(time + dt, motion)
         self.structure.accept()
+
+    def _halve(self, time: float, dt: float, halvings: int) -> None:
+        """Two steps of ``dt``, or none: where the second fails, the first is taken back."""
+        accepted = self.state()
+        try:
+            self._step(time, dt, halvings)
+            self._step(time + dt, dt, halvings)
+        except ConvergenceError:
+            self.restore(accepted)
+            raise
 
     def _balance(self, time: float, dt: float) -> None:
         for _, model, motion in self._models:
