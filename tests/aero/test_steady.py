@@ -1,6 +1,7 @@
 """Steady tools: known points of the NREL 5 MW, consistency between the tools, units."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -28,6 +29,21 @@ def nrel():
 def axial(nrel):
     """The same rotor without tilt: the wind blows along the shaft."""
     return replace(nrel, nacelle=replace(nrel.nacelle, tilt=0.0))
+
+
+@pytest.mark.parametrize("name", ["nrel5mw", Path("my_turbine.yaml")])
+@pytest.mark.parametrize(
+    "tool",
+    [
+        power_curve,
+        lambda t: performance_surface(t, [7.0], [0.0]),
+        lambda t: steady_rotor(t, 8.0, 1.0, 0.0),
+    ],
+    ids=["power_curve", "performance_surface", "steady_rotor"],
+)
+def test_a_name_in_place_of_a_turbine_is_told_how_to_load_it(tool, name):
+    with pytest.raises(InputError, match=rf"galerna\.load_turbine\('{name}'\)"):
+        tool(name)
 
 
 def test_surface_and_point_agree(axial):

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike
 from scipy.optimize import brentq
 
 from galerna.aero.bem.channels import STRIP_CHANNELS
+from galerna.aero.bem.checks import require_turbine
 from galerna.aero.bem.dataset import dataset
 from galerna.aero.bem.model import BladeElementMomentum
 from galerna.aero.bem.options import BemOptions
@@ -56,6 +57,7 @@ class SteadyRotor:
         air_density: float = AIR_DENSITY,
         yaw_error: float = 0.0,
     ) -> None:
+        require_turbine(turbine)
         self.turbine, self.air_density, self.yaw_error = turbine, air_density, yaw_error
         quasi_steady = (options or BemOptions()).model_copy(
             update={"quasi_steady": True, "tower_influence": False}
@@ -144,6 +146,7 @@ def power_curve(
     times gearbox and generator efficiency, and it is the electrical one that is rated.
     Raises InputError, and ConvergenceError where no pitch gives rated power.
     """
+    require_turbine(turbine)
     control = turbine.control
     if wind_speeds is None:
         wind_speeds = np.arange(control.cut_in_wind_speed, control.cut_out_wind_speed + 0.25, 0.5)

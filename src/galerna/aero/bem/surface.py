@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from galerna.aero.bem import model as bem
 from galerna.aero.bem import rotor as r
 from galerna.aero.bem import strips as s
+from galerna.aero.bem.checks import require_turbine
 from galerna.aero.bem.dataset import dataset
 from galerna.aero.bem.options import BemOptions
 from galerna.aero.rigid_rotor import rigid_rotor_motion
@@ -35,6 +36,7 @@ def performance_surface(
     The wind blows along the shaft, so one blade stands for all; unsteady parts are off.
     Raises InputError where the turbine's blade or polars cannot be used.
     """
+    require_turbine(turbine)
     ratios = np.atleast_1d(np.asarray(tip_speed_ratios, dtype=float))
     angles = np.atleast_1d(np.asarray(pitches, dtype=float))
     sweep = _Sweep(turbine, options or BemOptions())
