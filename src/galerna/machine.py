@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from galerna import doubts
 from galerna import turbine as turbines
 from galerna.aero.bem.model import BladeElementMomentum
 from galerna.aero.body_drag import BodyDrag
@@ -58,6 +59,10 @@ class Machine:
         steps = round(case.duration_s / case.time_step_s)
         yield "records", f"{len(self.channels)} of {len(simulation.channels)} channels"
         yield "time", f"{case.duration_s:g} s in {steps} steps of {case.time_step_s:g} s"
+
+    def doubts(self) -> Iterator[str]:
+        """What can be simulated but is hardly meant, a sentence each."""
+        yield from doubts.doubts(self.case.case, self.turbine, self.operation, self.wind.mean_speed)
 
 
 def build_machine(case: LoadedCase) -> Machine:
