@@ -72,7 +72,8 @@ def test_the_rotor_over_time_names_turbine_case_and_units():
 
 def test_spanwise_range_holds_the_mean():
     figure = spanwise_figure(result())
-    (mean,) = figure.axes[0].get_lines()
+    mean, zero = figure.axes[0].get_lines()
+    assert zero.get_ydata() == [0.0, 0.0], "forces are shown from zero"
     np.testing.assert_allclose(mean.get_ydata()[-1], 1.0, rtol=1e-2)
     assert "Radius [m]" in texts(figure)
 
@@ -87,6 +88,43 @@ def test_the_spectrum_peaks_at_three_per_revolution_and_holds_the_variance():
 def test_spectra_mark_the_rotation():
     marks = [text.get_text() for text in spectra_figure(result()).axes[0].texts]
     assert marks[:2] == ["1P", "3P"]
+
+
+def test_blades_are_marked_at_twice_per_revolution_too():
+    marks = [text.get_text() for text in spectra_figure(result()).axes[1].texts]
+    assert marks == ["1P", "2P", "3P", "4P", "6P", "9P"]
+
+
+@pytest.mark.parametrize("seconds", [30, 40, 60, 600])
+def test_once_per_revolution_stands_clear_of_lower_frequencies(seconds):
+    frequency, density, _ = power_spectrum(
+        result(10 * seconds), "aerodynamic_root_out_of_plane_moment"
+    )
+    assert frequency[density.argmax()] == pytest.approx(SPEED / (2 * np.pi), rel=0.02)
+    assert density[0] < 1e-3 * density.max()
+
+
+def test_channels_that_do_not_vary_have_no_spectrum(tmp_path):
+    still = result()
+    still["wind_speed"] = 8.0 + 1e-12 * still["rotor_thrust"] / 5e5
+    shown = texts(spectra_figure(still))
+    assert "Wind" not in shown
+    assert "Thrust" in shown
+    with pytest.raises(InputError, match="wind_speed varies"):
+        spectra_figure(still, ("wind_speed",))
+    assert [path.name for path in plot_result(still, tmp_path, ["wind_speed"])] == ["rotor.png"]
+
+
+def test_runaway_roots_are_left_out_of_inductions_and_kept_in_forces():
+    data = result()
+    ramp = xarray.zeros_like(data["normal_force"]) + data["radius"] / 100.0
+    data["axial_induction"] = ramp.where(data["radius"] > 9.0, 50.0).assign_attrs(units="1")
+    data["normal_force"] = data["normal_force"].where(data["radius"] > 9.0, -9e4)
+    data["normal_force"].attrs["units"] = "N/m"
+    force, induction = spanwise_figure(data).axes[:2]
+    assert force.get_ylim()[0] < -90.0
+    assert induction.get_ylim()[1] < 1.0
+    assert "without root and tip" in induction.get_title(loc="left")
 
 
 def test_the_inflow_shows_the_rotor_and_both_slices():
@@ -138,6 +176,7 @@ def test_curves_and_surfaces_draw(tmp_path):
     )
     figure = performance_surface_figure(surface, "x")
     assert "largest 0.480 at 8.00" in texts(figure)
+    assert figure.axes[0].texts, "contours carry their values"
     figure.savefig(tmp_path / "surface.png")
 
 

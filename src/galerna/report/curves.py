@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from galerna.contract import Array
 from galerna.report.style import BLUE, VERMILION, galerna_style, label, new_figure, shown
 
 if TYPE_CHECKING:
@@ -67,13 +68,21 @@ def _contours(ax: Axes, variable: xarray.DataArray, power: xarray.DataArray) -> 
     pitch, _ = shown(variable["pitch"])
     over = pitch, variable["tip_speed_ratio"].values
     values, driven = (v.transpose("tip_speed_ratio", "pitch").values for v in (variable, power))
-    levels = MaxNLocator(14).tick_values(0.0, float(values[driven > 0.0].max()))
+    levels = np.array(MaxNLocator(14).tick_values(0.0, float(values[driven > 0.0].max())))
     filled = ax.contourf(*over, values, levels, cmap="viridis")
+    _label_contours(ax, over, np.where(driven > 0.0, values, np.nan), levels[1::2])
     if driven.min() < 0.0:
         ax.contourf(*over, driven, [driven.min(), 0.0], colors="white")
     ax.figure.colorbar(filled, ax=ax, format="%.2f")
     ax.set_title(label(variable, ""))
     ax.grid(False)
+
+
+def _label_contours(ax: Axes, over: tuple[Array, Array], values: Array, levels: Array) -> None:
+    """Lines with their values, dark where the filling is light."""
+    colours = ["white" if level < 0.6 * levels[-1] else "black" for level in levels]
+    lines = ax.contour(*over, values, levels, colors=colours, linewidths=0.6)
+    ax.clabel(lines, fmt="%.2f", fontsize="small")
 
 
 def _mark_best(ax: Axes, power: xarray.DataArray) -> None:

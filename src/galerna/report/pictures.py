@@ -10,7 +10,7 @@ from galerna.errors import InputError, did_you_mean
 from galerna.report.inflow import RotorCircle, inflow_figure
 from galerna.report.rotor import rotor_figure
 from galerna.report.spanwise import spanwise_figure
-from galerna.report.spectra import FEWEST_RECORDS, spectra_figure
+from galerna.report.spectra import FEWEST_RECORDS, spectra_figure, varying
 from galerna.report.style import save
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ def _usual(
     yield "rotor", lambda: rotor_figure(dataset)
     if "radius" in dataset.dims:
         yield "spanwise", lambda: spanwise_figure(dataset)
-    if dataset.sizes["time"] >= FEWEST_RECORDS:
+    if dataset.sizes["time"] >= FEWEST_RECORDS and varying(dataset):
         yield "spectra", lambda: spectra_figure(dataset)
     if wind is not None:
         rotor = RotorCircle(dataset.attrs["hub_height_m"], dataset.attrs["rotor_radius_m"])
@@ -64,7 +64,7 @@ def _chosen(
     over_time = tuple(name for name in channels if name not in along)
     if over_time:
         yield "rotor", lambda: rotor_figure(dataset, over_time)
-        if dataset.sizes["time"] >= FEWEST_RECORDS:
+        if dataset.sizes["time"] >= FEWEST_RECORDS and varying(dataset, over_time):
             yield "spectra", lambda: spectra_figure(dataset, over_time)
     if along:
         yield "spanwise", lambda: spanwise_figure(dataset, along)

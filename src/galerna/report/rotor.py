@@ -5,7 +5,15 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from galerna.errors import InputError
-from galerna.report.style import COLOURS, galerna_style, label, new_figure, shown, title_of
+from galerna.report.style import (
+    COLOURS,
+    galerna_style,
+    label,
+    new_figure,
+    shown,
+    title_of,
+    varies,
+)
 
 if TYPE_CHECKING:
     import xarray
@@ -33,7 +41,7 @@ def rotor_figure(dataset: xarray.Dataset, channels: tuple[str, ...] = ROTOR_CHAN
     present = [name for name in channels if name in dataset and dataset[name].ndim <= 2]
     if not present:
         raise InputError("plot", f"the result has none of the channels {', '.join(channels)}")
-    constant = [name for name in present if _is_constant(dataset[name])]
+    constant = [name for name in present if not varies(dataset[name])]
     names = [name for name in present if name not in constant] or present
     with galerna_style():
         figure, axes = new_figure(len(names), 1, (9.0, 1.2 + 1.45 * len(names)), sharex=True)
@@ -43,10 +51,6 @@ def rotor_figure(dataset: xarray.Dataset, channels: tuple[str, ...] = ROTOR_CHAN
         fixed = [_figure_of(dataset[name]) for name in constant if name not in names]
         figure.suptitle("\n".join([title_of(dataset, "Rotor over time"), ", ".join(fixed)]).strip())
     return figure
-
-
-def _is_constant(variable: xarray.DataArray) -> bool:
-    return bool((variable == variable.values.flat[0]).all())
 
 
 def _figure_of(variable: xarray.DataArray) -> str:

@@ -8,7 +8,7 @@ import numpy as np
 
 from galerna.contract import Array
 from galerna.errors import InputError
-from galerna.report.style import BLUE, galerna_style, label, new_figure, shown, title_of
+from galerna.report.style import BLUE, GREY, galerna_style, label, new_figure, shown, title_of
 
 if TYPE_CHECKING:
     import xarray
@@ -24,7 +24,8 @@ SPANWISE_CHANNELS = (
     "tangential_induction",
 )
 
-FILLING = (0.15, 0.98)  #: of the radius, what the limits of the axes are chosen for
+FILLING = (0.15, 0.985)  #: of the radius, where the theory holds
+MOST_ADDED = 1.5  #: of the range there, what root and tip may widen a panel to
 
 
 def spanwise_figure(
@@ -56,22 +57,33 @@ def _draw(ax: Axes, variable: xarray.DataArray) -> None:
     radius = variable["radius"].values
     values, unit = shown(variable.transpose(..., "radius"))
     samples = values.reshape(-1, len(radius))
+    inside = slice(None) if _is_force(variable) else _worth_showing(radius, samples)
+    radius, samples = radius[inside], samples[:, inside]
     low, high = np.percentile(samples, [5.0, 95.0], axis=0)
     extremes = samples.min(axis=0), samples.max(axis=0)
     ax.fill_between(radius, *extremes, color=BLUE, alpha=0.12, lw=0.0, label="extremes")
     ax.fill_between(radius, low, high, color=BLUE, alpha=0.25, lw=0.0, label="5 to 95 %")
     ax.plot(radius, samples.mean(axis=0), color=BLUE, marker=".", ms=4, label="mean")
-    ax.set_title(label(variable, unit))
+    cut = len(radius) < variable.sizes["radius"]
+    ax.set_title(label(variable, unit) + (", without root and tip" if cut else ""))
     ax.margins(x=0.0)
-    ax.set_ylim(*_limits(radius, *extremes))
+    if _is_force(variable):
+        ax.axhline(0.0, color=GREY, lw=0.6, zorder=0)
 
 
-def _limits(radius: Array, low: Array, high: Array) -> tuple[float, float]:
-    """Limits that the outer blade fills; root and tip, where the theory ends, may leave them."""
+def _is_force(variable: xarray.DataArray) -> bool:
+    return variable.attrs.get("units") == "N/m"
+
+
+def _worth_showing(radius: Array, samples: Array) -> Array:
+    """Stations (r,) bool whose values belong together.
+
+    Angles and inductions run away at the cylinder of the root and at the very tip, where the
+    theory ends; they are left out where they would flatten the curve of the blade between.
+    """
     inner, outer = FILLING
     inside = (radius >= inner * radius[-1]) & (radius <= outer * radius[-1])
-    if not inside.any():
-        inside[:] = True
-    bottom, top = float(low[inside].min()), float(high[inside].max())
-    room = 0.06 * (top - bottom) or 1.0
-    return bottom - room, top + room
+    everywhere = np.full(len(radius), True)
+    if inside.sum() < 2 or np.ptp(samples) <= MOST_ADDED * np.ptp(samples[:, inside]):
+        return everywhere
+    return inside

@@ -70,6 +70,12 @@ def shown(variable: xarray.DataArray) -> tuple[Array, str]:
     return factor * variable.values.astype(float), unit
 
 
+def varies(variable: xarray.DataArray) -> bool:
+    """Whether a channel changes over time by more than rounding."""
+    values = variable.values.astype(float)
+    return bool((values.std(axis=0) > 1e-9 * np.abs(values.mean(axis=0))).any())
+
+
 def label(variable: xarray.DataArray, unit: str) -> str:
     """Axis label: what the channel means and its unit, the meaning on a line of its own."""
     name = str(variable.attrs.get("long_name", variable.name))
