@@ -6,7 +6,8 @@ import pytest
 from galerna.errors import ConvergenceError, InputError
 from galerna.structure.assembly import Structure
 from galerna.structure.beam import discretise, nodal_loads, straight, uniform
-from galerna.structure.bodies import rigid_body
+from galerna.structure.bodies import moved, rigid_body, weight_of
+from galerna.structure.frames import rotation_about
 from galerna.structure.joints import ALL, Joint, hinge, rigid
 from galerna.structure.statics import static_equilibrium
 from galerna.structure.system import Forces
@@ -144,6 +145,25 @@ def test_driven_joints_that_agree_are_redundant_and_not_contradicting():
         s.build()
 
 
+@pytest.mark.parametrize("n", [1, 2, 3, 8])
+def test_long_bent_elements_with_offset_mass_keep_positive_inertia(n):
+    """An arc of 12 m: mass and first moment exact, every node's mass matrix positive."""
+
+    def arc(s):
+        t = 1.2 * s
+        position = 10 * np.stack([1 - np.cos(t), 0 * t, np.sin(t)], axis=1)
+        return position, np.array([rotation_about(1, angle) for angle in t])
+
+    inertia = rigid_body(3.0, np.array([0.2, -0.1, 0.0]), np.array([0.1, 0.2, 0.25]))
+    beam = discretise(arc, 12.0, uniform(np.full(6, 1e6), inertia), np.linspace(0, 1, n + 1))
+    total = sum(
+        moved(M, R, x) for M, R, x in zip(beam.mass, beam.rotation, beam.position, strict=True)
+    )
+    assert all(np.linalg.eigvalsh(M)[0] > 0 for M in beam.mass)
+    assert total[0, 0] == pytest.approx(36.0, rel=1e-12)
+    assert weight_of(total)[1] == pytest.approx(36 * (10 - 9.8 * np.sin(1.2) / 1.2), rel=1e-4)
+
+
 def test_a_loose_structure_is_an_error_that_says_where():
     s = Structure()
     s.frame("brick", [0.0, 0, 0], mass=rigid_body(1.0, None, np.ones(3)))
@@ -162,5 +182,19 @@ def test_bad_input_is_named():
     s.frame("ghost", [0.0, 0, 0])
     with pytest.raises(InputError, match="ghost"):
         s.build()
+    lopsided = np.diag(INERTIA)
+    lopsided[3, 4] = 5e-4
+    with pytest.raises(InputError, match="not symmetric"):
+        cantilever(2, uniform(lopsided, INERTIA))
+    with pytest.raises(InputError, match="damping"):
+        cantilever(2, uniform(INERTIA, INERTIA, np.full(6, -0.1)))
+    with pytest.raises(InputError, match="do not grow"):
+        discretise(straight(np.zeros(3), np.eye(3), 1.0), 1.0, SLENDER, np.array([0, 0.7, 0.5, 1]))
+    with pytest.raises(InputError, match="no direction"):
+        hinge("pin", "ground", "ghost", np.zeros(3), np.zeros(3))
+    with pytest.raises(InputError, match="finite"):
+        rigid_body(np.nan)
+    with pytest.raises(InputError, match="symmetric"):
+        rigid_body(1.0, None, np.eye(3) + np.diag([0.5, 0.0], 1))
     with pytest.raises(InputError, match="not positive definite"):
         cantilever(2, uniform(np.array([1.0, 1, 1, 1, -1, 1]), INERTIA))

@@ -70,15 +70,15 @@ def discretise(
 ) -> Beam:
     """Elements between the nodes at the fractions ``span`` (n+1,) of an axis of ``length`` m.
 
-    Raises InputError if a section's stiffness is not positive definite or a node would
-    have no inertia.
+    Raises InputError if a section's stiffness is not symmetric and positive definite, its
+    damping is negative, ``span`` does not grow or a node would have no inertia.
     """
     span = np.asarray(span, dtype=float)
-    _check(sections, name)
+    _check(sections, span, name)
     x, R = curve(span)
     n = len(span) - 1
     mass = np.zeros((n + 1, 6, 6))
-    lever = np.zeros((n + 1, 3))
+    lever, spread = np.zeros((n + 1, 3)), np.zeros((n + 1, 3, 3))
     reference, stiffness = np.zeros((n, 6)), np.zeros((n, 6, 6))
     for e in range(n):
         ends = (x[e], R[e], x[e + 1], R[e + 1])
@@ -90,11 +90,11 @@ def discretise(
                                   reference[e])  # fmt: skip
         fraction = (s - span[e]) / (span[e + 1] - span[e])
         density = interpolate(sections, sections.inertia, s)
-        for k, (M, first) in enumerate(_end_masses(ends, at, axes, density, ds, fraction)):
-            mass[e + k] += M
-            lever[e + k] += first
+        for k, parts in enumerate(_end_masses(ends, at, axes, density, ds, fraction)):
+            for total, part in zip((mass, lever, spread), parts, strict=True):
+                total[e + k] += part
     for i in range(n + 1):
-        mass[i, 3:, 3:] -= hat(lever[i]) @ hat(lever[i]) / mass[i, 0, 0]
+        _close(mass[i], hat(lever[i]), spread[i])
         if np.linalg.eigvalsh(mass[i]).min() <= 0.0:
             raise InputError(
                 name, f"no rotary inertia at span {span[i]:.3g}",
@@ -105,6 +105,19 @@ def discretise(
     return Beam(span, x, R, mass, reference, stiffness, damping)
 
 
+def _close(M: Array, lever: Array, spread: Array) -> None:
+    """Give a node's mass matrix (6,6) the square of its levers, so that it stays positive.
+
+    ``lever`` and ``spread`` (3,3) are the levers' part in the first moment and the product of
+    levers and sections' mass centres. Where long elements twist so much that this is more
+    than a body can have, the product of their means, a bound for all, takes its place.
+    """
+    M[3:, 3:] -= lever @ lever / M[0, 0]
+    if np.linalg.eigvalsh(M)[0] <= 0.0:
+        center = M[3:, :3] - lever
+        M[3:, 3:] -= spread + (center @ lever + lever @ center) / M[0, 0]
+
+
 def interpolate(sections: SectionProperties, table: Array, span: Array) -> Array:
     """Section matrices (k,6,6) at ``span`` (k,), linear between the stations."""
     right = np.clip(np.searchsorted(sections.span, span), 1, len(sections.span) - 1)
@@ -113,14 +126,20 @@ def interpolate(sections: SectionProperties, table: Array, span: Array) -> Array
     return (1.0 - weight) * table[right - 1] + weight * table[right]
 
 
-def _check(sections: SectionProperties, name: str) -> None:
+def _check(sections: SectionProperties, span: Array, name: str) -> None:
+    if not (np.diff(span) > 0.0).all():
+        raise InputError(name, f"the nodes' fractions {span.tolist()} do not grow")
+    if not (sections.damping >= 0.0).all():
+        raise InputError(name, f"the damping {sections.damping.tolist()} s is not positive or zero")
     scale = 1.0 / np.sqrt(np.abs(np.einsum("nii->ni", sections.stiffness)).clip(1e-300))
     scaled = scale[:, :, None] * sections.stiffness * scale[:, None, :]
     for i, matrix in enumerate(scaled):
-        if not np.isfinite(matrix).all() or np.linalg.eigvalsh(0.5 * (matrix + matrix.T))[0] <= 0:
+        lopsided = not np.abs(matrix - matrix.T).max() < 1e-3
+        if lopsided or np.linalg.eigvalsh(0.5 * (matrix + matrix.T))[0] <= 0:
             raise InputError(
                 name,
-                f"the section stiffness at span {sections.span[i]:.4g} is not positive definite",
+                f"the section stiffness at span {sections.span[i]:.4g} is not "
+                f"{'symmetric' if lopsided else 'positive definite'}",
                 "stiffness matrices are symmetric with positive eigenvalues",
             )
 
@@ -153,8 +172,10 @@ def _stiffness(
 
 def _end_masses(
     ends: Ends, at: Array, axes: Array, density: Array, ds: Array, fraction: Array
-) -> list[tuple[Array, Array]]:
-    """Mass matrix (6,6) and first moment (3,) of the levers of an element at its two ends.
+) -> list[tuple[Array, Array, Array]]:
+    """Mass matrix (6,6) of an element at its two ends, and the levers' part in its moments.
+
+    The first moment (3,) of the levers and their product (3,3) with the mass centres.
 
     A section's mass is shared by Hermite's cubics: the value's go to the end as they are,
     the slope's as a lever along the chord; what the axis bends off the chord adds to it.
@@ -168,16 +189,18 @@ def _end_masses(
     ):
         R = ends[2 * k + 1]
         off = at - (xa + f[:, None] * chord)
-        M, first = np.zeros((6, 6)), np.zeros(3)
+        M, first, spread = np.zeros((6, 6)), np.zeros(3), np.zeros((3, 3))
         for i in range(len(ds)):
             turn = np.kron(np.eye(2), R.T @ axes[i])
             local = turn @ density[i] @ turn.T
             lever = R.T @ (slope[i] * chord + value[i] * off[i])
             E = np.zeros((6, 6))
             E[:3, 3:] = -hat(lever)
-            M += ds[i] * (value[i] * local + local @ E + E.T @ local)
+            shift = local @ E + E.T @ local
+            M += ds[i] * (value[i] * local + shift)
+            spread += ds[i] * shift[3:, 3:]
             first += ds[i] * local[0, 0] * lever
-        out.append((M, first))
+        out.append((M, first, spread))
     return out
 
 

@@ -19,7 +19,12 @@ def rigid_body(mass: float, center: Array | None = None, inertia: Array | None =
     """
     J = _inertia_matrix(np.zeros(3) if inertia is None else np.asarray(inertia, dtype=float))
     c = np.zeros(3) if center is None else np.asarray(center, dtype=float)
-    if mass < 0.0 or np.linalg.eigvalsh(J).min() < -1e-9 * max(np.abs(J).max(), 1e-300):
+    rounding = 1e-9 * max(np.abs(J).max(), 1e-300)
+    if not np.isfinite([mass, *c, *J.ravel()]).all() or np.abs(J - J.T).max() > rounding:
+        raise InputError(
+            "rigid body", "mass, centre and a symmetric inertia must be finite numbers"
+        )
+    if mass < 0.0 or np.linalg.eigvalsh(J).min() < -rounding:
         raise InputError("rigid body", "mass and moments of inertia must not be negative")
     M = np.zeros((6, 6))
     M[:3, :3] = mass * np.eye(3)

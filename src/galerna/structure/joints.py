@@ -150,8 +150,11 @@ def integral(speed: Angle) -> Angle:
 
 
 def axes_along(axis: Array) -> Array:
-    """Joint axes (3,3) with z along ``axis`` (3,)."""
-    z = np.asarray(axis, dtype=float) / np.linalg.norm(axis)
+    """Joint axes (3,3) with z along ``axis`` (3,); raises InputError if that has no direction."""
+    length = np.linalg.norm(axis)
+    if not 0.0 < length < np.inf:
+        raise InputError("axis", f"{np.asarray(axis).tolist()} has no direction")
+    z = np.asarray(axis, dtype=float) / length
     x = np.cross(z, np.eye(3)[np.abs(z).argmin()])
     x /= np.linalg.norm(x)
     return np.stack([x, np.cross(z, x), z], axis=1)
