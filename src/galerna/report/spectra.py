@@ -76,6 +76,8 @@ def spectra_figure(dataset: xarray.Dataset, channels: tuple[str, ...] = SPECTRA_
 
     Raises InputError if none of the channels varies or there are too few records.
     """
+    from matplotlib.ticker import NullLocator
+
     names = varying(dataset, channels)
     if not names:
         raise InputError("plot", f"in the result none of {', '.join(channels)} varies")
@@ -87,6 +89,7 @@ def spectra_figure(dataset: xarray.Dataset, channels: tuple[str, ...] = SPECTRA_
             ax.set_title(label(dataset[name], unit))
             ax.set_xlim(frequency[0], frequency[-1])
             ax.set_ylim(*_limits(density))
+            ax.yaxis.set_minor_locator(NullLocator())
             _mark_rotation(ax, dataset, name, frequency[-1])
         axes[-1, 0].set_xlabel("Frequency [Hz]")
         figure.suptitle(title_of(dataset, "Power spectral density"))

@@ -20,6 +20,7 @@ BLUE, VERMILION, GREEN, PURPLE, ORANGE = "#0072B2", "#D55E00", "#009E73", "#CC79
 COLOURS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE)
 GREY = "#6f6f6f"
 WIND_COLOURS = "viridis"
+DOTS_PER_INCH = 150
 
 _SETTINGS: Any = {
     "axes.spines.top": False,
@@ -32,7 +33,7 @@ _SETTINGS: Any = {
     "lines.linewidth": 1.1,
     "font.size": 9.5,
     "legend.frameon": False,
-    "savefig.dpi": 150,
+    "savefig.dpi": DOTS_PER_INCH,
 }
 
 #: how quantities are shown: factor to the unit that a reader of the field expects
@@ -90,7 +91,14 @@ def title_of(dataset: xarray.Dataset, what: str) -> str:
 
 
 def save(figure: Figure, path: Path) -> Path:
-    """Write a PNG and return where it is."""
+    """Write a picture of the kind that the name ends with, and return where it is."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
     with galerna_style():
-        figure.savefig(path)
+        if path.suffix != ".png":
+            figure.savefig(path)
+            return path
+        # Figure.savefig draws everything twice, first to lay it out; the canvas does it once.
+        figure.set_dpi(DOTS_PER_INCH)
+        FigureCanvasAgg(figure).print_png(path, pil_kwargs={"compress_level": 3})
     return path
