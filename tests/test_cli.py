@@ -2,6 +2,8 @@
 
 import json
 import os
+import re
+import shlex
 import signal
 import subprocess
 import sys
@@ -68,6 +70,95 @@ def test_help_of_every_command_has_an_example(name):
     assert f"galerna {name}" in result.stdout.split("Example:")[1]
 
 
+def examples_in_help():
+    """The command lines that the help texts name, by command."""
+    for command in app.registered_commands:
+        for line in re.findall(r"galerna [^>]*?(?=   | >|$)", command.epilog.split("[/bold]")[1]):
+            yield shlex.split(line)[1:]
+
+
+RUNS = [arguments for arguments in examples_in_help() if arguments[0] == "run"]
+
+
+def test_every_command_is_among_the_examples():
+    assert {arguments[0] for arguments in examples_in_help()} == {
+        name.replace("_", "-") for name in COMMANDS
+    }
+
+
+@pytest.mark.parametrize("arguments", RUNS, ids=" ".join)
+def test_the_example_of_run_is_a_case_that_can_be_built(arguments, tmp_path, monkeypatch):
+    """All checks before the building, which test_examples does with a coarser wind."""
+    from galerna import commands
+
+    reached = []
+
+    def build(case):
+        reached.append(case.case.duration_s)
+        raise KeyboardInterrupt
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(commands, "_build", build)
+    assert galerna(*arguments) == 130
+    assert reached == [float(arguments[arguments.index("--duration") + 1])]
+
+
+QUICK = [a for a in examples_in_help() if a[0] in ("examples", "turbine", "turbines", "cite")]
+
+
+@pytest.mark.parametrize("arguments", QUICK, ids=" ".join)
+def test_an_example_that_is_quick_runs(arguments, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert galerna(*arguments) == 0
+    assert capsys.readouterr().out.strip()
+
+
+def test_cases_of_the_examples_are_there():
+    """What a case or turbine argument names is built in, or plainly the user's own file."""
+    from galerna import examples, turbine_names
+
+    for command, *rest in examples_in_help():
+        if command in ("run", "wind", "cite", "check") and not rest[0].startswith("my_"):
+            assert rest[0] in examples.case_names()
+        if command in ("turbine", "power-curve"):
+            assert rest[0] in turbine_names()
+
+
+def test_a_duration_that_leaves_no_record_is_named_itself(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    assert galerna("run", "turbulent", "--duration", 60) == 2
+    error = capsys.readouterr().err
+    assert "--duration 60: outputs.start_s: 60 s leaves nothing" in error
+    assert not list(tmp_path.iterdir())
+
+
+def test_doubts_are_warnings_before_a_run(case, capsys):
+    case.write_text(CASE.replace("9.16", "-9.16"))
+    for command in ("check", "run"):
+        assert galerna(command, case) == 0
+        captured = capsys.readouterr()
+        assert "warning: the rotor turns backwards, at -9.16 rpm" in captured.err
+        assert "backwards" not in captured.out
+
+
+def test_a_case_without_doubts_has_no_warnings(case, capsys):
+    assert galerna("check", case) == 0
+    assert capsys.readouterr().err == ""
+
+
+def test_making_the_wind_is_said(case, capsys):
+    case.write_text(TURBULENT)
+    assert galerna("check", case) == 0
+    assert capsys.readouterr().err == "making the wind ...\n"
+
+
+@pytest.mark.parametrize("command", [("plot",), ("export", "r.csv")])
+def test_a_case_in_place_of_a_result_is_told_apart(command, case, capsys):
+    name, *rest = command
+    assert galerna(name, case, *rest) == 2
+    assert "this is a case: galerna run it first" in capsys.readouterr().err
+
+
 def test_run_writes_beside_the_case_and_prints_a_table(case, capsys):
     assert galerna("run", case) == 0
     assert open_result(case.with_suffix(".nc")).sizes["time"] == 20
@@ -129,21 +220,27 @@ def test_check_finds_what_only_the_built_machine_can_tell(case, capsys):
     assert "case.yaml:7: outputs.channels[0]" in capsys.readouterr().err
 
 
-def test_interrupting_leaves_a_result(case):
-    """Ctrl-C: exit code 130, no traceback, a readable result."""
+@pytest.mark.parametrize(
+    ("sent", "code", "word"),
+    [(signal.SIGINT, 130, "interrupted"), (signal.SIGTERM, 143, "terminated")],
+)
+def test_interrupting_leaves_a_result(case, sent, code, word):
+    """Ctrl-C and a batch system's SIGTERM: no traceback, a readable result."""
     arguments = ["run", str(case), "--duration", "100000"]
-    code = f"from galerna.cli import main; main({arguments!r})"
-    process = subprocess.Popen([sys.executable, "-c", code], stderr=subprocess.PIPE, text=True)
+    program = f"from galerna.cli import main; main({arguments!r})"
+    process = subprocess.Popen([sys.executable, "-c", program], stderr=subprocess.PIPE, text=True)
     log = case.with_suffix(".nc.log")
     limit = time.monotonic() + 60.0
     while not (log.exists() and log.stat().st_size > 50_000) and time.monotonic() < limit:
         time.sleep(0.05)
-    process.send_signal(signal.SIGINT)
+    process.send_signal(sent)
     _, error = process.communicate(timeout=60)
-    assert process.returncode == 130, error
-    assert "interrupted" in error
+    assert process.returncode == code, error
+    assert word in error
     assert "Traceback" not in error
-    assert open_result(case.with_suffix(".nc")).sizes["time"] > 0
+    result = open_result(case.with_suffix(".nc"))
+    assert result.sizes["time"] > 0
+    assert result.attrs["status"].endswith(f"s: {word}")
 
 
 def test_turbines_and_their_figures(capsys):
@@ -158,7 +255,12 @@ def test_power_curve_as_table_picture_and_file(tmp_path, capsys):
     assert galerna("power-curve", "nrel5mw", "--plot", plot, "--csv", csv, "--step", 7) == 0
     assert "C_P" in capsys.readouterr().out
     assert plot.stat().st_size > 10_000
-    assert len(csv.read_text().splitlines()) == 5
+    header, *rows = csv.read_text().splitlines()
+    assert len(rows) == 4
+    assert header.startswith("wind_speed [m/s],rotor_speed [rpm],pitch [deg],power [MW],")
+    last = dict(zip(header.split(","), map(float, rows[-1].split(",")), strict=True))
+    assert last["rotor_speed [rpm]"] == pytest.approx(12.1, rel=1e-3)
+    assert 20.0 < last["pitch [deg]"] < 25.0  # 24 m/s: published 22.35 deg
 
 
 TURBULENT = CASE.replace(

@@ -38,7 +38,7 @@ def example(*lines: str) -> str:
     return "[bold]Example:[/bold]  " + "   ".join(lines)
 
 
-@app.command(epilog=example("galerna run turbulent --duration 60 --output here.nc"))
+@app.command(epilog=example("galerna run demo --duration 60 --output here.nc"))
 def run(
     case: CaseArgument,
     output: Annotated[

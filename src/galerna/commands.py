@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import json
 import shutil
+import signal
 import sys
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,8 +16,14 @@ from galerna.errors import GalernaError, InputError
 from galerna.report import tables
 
 if TYPE_CHECKING:
+    from types import FrameType
+
+    import xarray
+
+    from galerna.case import Case, LoadedCase
     from galerna.inflow.field import WindField
     from galerna.inflow.options import InflowOptions
+    from galerna.machine import Machine
 
 #: of a case's inflow, what a file with a turbulence box leaves out
 NOT_IN_A_BOX = (
@@ -30,21 +37,54 @@ NOT_IN_A_BOX = (
 
 
 class InterruptedRunError(GalernaError):
-    """The user pressed Ctrl-C."""
+    """The user pressed Ctrl-C, or something sent SIGTERM."""
 
-    exit_code = 130
+    def __init__(self, interrupt: KeyboardInterrupt) -> None:
+        super().__init__(str(interrupt) or "interrupted")
+        terminated = isinstance(interrupt, Terminated)
+        self.exit_code = 128 + (signal.SIGTERM if terminated else signal.SIGINT)
+        for note in getattr(interrupt, "__notes__", ()):
+            self.add_note(note)
+
+
+class Terminated(KeyboardInterrupt):
+    """SIGTERM, which a batch system sends before it kills, ends a run as Ctrl-C does."""
+
+
+def _terminate(number: int, frame: FrameType | None) -> None:
+    raise Terminated("terminated")
 
 
 @contextmanager
 def interruptible() -> Iterator[None]:
-    """Turn Ctrl-C into an error that keeps the notes on what was saved."""
+    """Turn Ctrl-C and SIGTERM into an error that keeps the notes on what was saved."""
+    before = signal.signal(signal.SIGTERM, _terminate)
     try:
         yield
     except KeyboardInterrupt as interrupt:
-        error = InterruptedRunError("interrupted")
-        for note in getattr(interrupt, "__notes__", ()):
-            error.add_note(note)
-        raise error from None
+        raise InterruptedRunError(interrupt) from None
+    finally:
+        signal.signal(signal.SIGTERM, before)
+
+
+def making_wind(case: Case) -> AbstractContextManager[None]:
+    """Say that the wind is being made, where that takes a while."""
+    from galerna.inflow.options import Generated
+    from galerna.progress import working
+
+    generated = isinstance(case.inflow.turbulence, Generated)
+    return working("making the wind") if generated else nullcontext()
+
+
+def _build(case: LoadedCase) -> Machine:
+    """The machine of a case, with what is in doubt about it on stderr."""
+    from galerna.machine import build_machine
+
+    with making_wind(case.case):
+        machine = build_machine(case)
+    for doubt in machine.doubts():
+        print(f"warning: {doubt}", file=sys.stderr)
+    return machine
 
 
 def run(case: str, output: Path | None, duration: float | None, overwrite: bool) -> None:
@@ -52,14 +92,13 @@ def run(case: str, output: Path | None, duration: float | None, overwrite: bool)
     from galerna import running
     from galerna.case import load
     from galerna.progress import best
+    from galerna.results.store import check_free
 
-    loaded = load(case)
+    loaded = load(case) if duration is None else load(case).lasting(duration)
     path = output or _default_output(case)
-    progress = [best(sys.stderr.isatty())]
+    check_free(path, overwrite)
     with interruptible():
-        result = running.run(
-            loaded, path, duration=duration, overwrite=overwrite, callbacks=progress
-        )
+        result = running.simulate(_build(loaded), path, overwrite, [best(sys.stderr.isatty())])
     tables.print_statistics(result, path)
 
 
@@ -72,10 +111,9 @@ def _default_output(case: str) -> Path:
 def check(case: str) -> None:
     """Build everything that a run needs, and say what it is."""
     from galerna.case import load
-    from galerna.machine import build_machine
 
     loaded = load(case)
-    tables.print_pairs(build_machine(loaded).describe())
+    tables.print_pairs(_build(loaded).describe())
     print(f"{loaded.document.name}: ready to run")
 
 
@@ -171,8 +209,21 @@ def power_curve(name: str, plot: Path | None, csv: Path | None, step: float) -> 
     if plot is not None:
         print(f"picture: {save(power_curve_figure(curve, turbine.name), plot)}")
     if csv is not None:
-        curve.to_dataframe().to_csv(csv)
+        _write_curve(curve, csv)
         print(f"table: {csv}")
+
+
+def _write_curve(curve: xarray.Dataset, file: Path) -> None:
+    """A steady operating curve as .csv in the units of the printed table, named in the header."""
+    import pandas
+
+    from galerna.report.style import shown
+
+    columns = {}
+    for name in ("wind_speed", *curve.data_vars):
+        values, unit = shown(curve[name])
+        columns[f"{name} [{unit}]" if unit != "1" else str(name)] = values
+    pandas.DataFrame(columns).to_csv(file, index=False)
 
 
 def wind(case: str, bts: Path | None, hawc2: Path | None, plot: Path | None) -> None:
@@ -184,7 +235,8 @@ def wind(case: str, bts: Path | None, hawc2: Path | None, plot: Path | None) -> 
 
     loaded = load(case)
     turbine = load_turbine(loaded)
-    built = build_wind(loaded, turbine)
+    with making_wind(loaded.case):
+        built = build_wind(loaded, turbine)
     tables.print_pairs(("inflow", line) for line in built.description)
     if bts is not None or hawc2 is not None:
         _write_box(built.field, bts, hawc2)
@@ -232,9 +284,8 @@ def plot(result: Path, channels: list[str], output: Path | None) -> None:
     """Draw a result into a folder; the inflow is made again from the case in it."""
     from galerna.machine import wind_of_result
     from galerna.report import plot_result
-    from galerna.results import open_result
 
-    dataset = open_result(result)
+    dataset = _open(result)
     if dataset.attrs["status"] != "complete":
         print(f"{result}: {dataset.attrs['status']}", file=sys.stderr)
     folder = output or result.with_name(f"{result.stem}_plots")
@@ -253,13 +304,22 @@ def _print_pictures(paths: list[Path]) -> None:
 
 def export(result: Path, file: Path) -> None:
     """Write a result as .outb or .csv, by the name's ending."""
-    from galerna.results import open_result, to_csv, to_outb
+    from galerna.results import to_csv, to_outb
 
     writers = {".outb": to_outb, ".csv": to_csv}
     if file.suffix not in writers:
         raise InputError(str(file), f"ends with {file.suffix!r}, expected .outb or .csv")
-    writers[file.suffix](open_result(result), file)
+    writers[file.suffix](_open(result), file)
     print(f"written: {file}")
+
+
+def _open(result: Path) -> xarray.Dataset:
+    """A result; InputError, which says so, where it is a case."""
+    from galerna.results import open_result
+
+    if result.suffix.lower() in (".yaml", ".yml"):
+        raise InputError(str(result), "this is a case: galerna run it first")
+    return open_result(result)
 
 
 def cite(case: str, bibtex: bool) -> None:

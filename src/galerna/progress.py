@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import sys
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import numpy as np
 
@@ -87,6 +89,19 @@ def machine(simulation: Simulation) -> str:
     if "rotor_power" in record:
         shown.append(f"{np.mean(record['rotor_power']) / 1e6:.3f} MW")
     return "  ".join(shown)
+
+
+@contextmanager
+def working(what: str) -> Iterator[None]:
+    """Say on stderr what goes on inside: a spinner on a terminal, a line elsewhere."""
+    if not sys.stderr.isatty():
+        print(f"{what} ...", file=sys.stderr, flush=True)
+        yield
+        return
+    from rich.console import Console
+
+    with Console(stderr=True).status(what):
+        yield
 
 
 def best(stream_is_terminal: bool) -> Callback:

@@ -48,7 +48,8 @@ def judge(cases: Sequence[Any], json_file: Path | None, page: Path | None) -> in
     if page is not None:
         page.write_text(framework.page(outcomes))
     failed = list(_failed(outcomes))
-    print(f"{len(outcomes)} cases, {len(failed)} with a failed check" + ":" * bool(failed))
+    total = "1 case" if len(outcomes) == 1 else f"{len(outcomes)} cases"
+    print(f"{total}, {len(failed)} with a failed check" + ":" * bool(failed))
     for name in failed:
         print(f"  {name}")
     return 1 if failed else 0

@@ -34,10 +34,15 @@ class LoadedCase:
         return self.case.name or Path(self.document.name).stem
 
     def lasting(self, duration: float) -> LoadedCase:
-        """The same case over another duration, s."""
+        """The same case over another duration, s; InputError where the rest does not suit it."""
         values = {**self.document.values, "duration_s": duration}
         document = replace(self.document, values=values)
-        return LoadedCase(_validate(document), document, self.folder)
+        try:
+            return LoadedCase(_validate(document), document, self.folder)
+        except CaseError as error:  # the case alone was right: the new duration is to blame
+            what = "; ".join(f"{problem.key}: {problem.what}" for problem in error.problems)
+            hint = "give another duration, or change the case"
+            raise InputError(f"--duration {duration:g}", what, hint) from error
 
     @contextmanager
     def blame(self, *path: str | int) -> Iterator[None]:
