@@ -102,6 +102,40 @@ def test_the_loads_of_a_beam_off_its_frame_are_its_sections():
     assert np.allclose(at_root, [0, 1, 0, -10, 0, 0], atol=1e-3)
 
 
+@pytest.mark.parametrize("n", [1, 2, 5, 20])
+@pytest.mark.parametrize("root", ["ground", "hub", None])
+def test_the_root_carries_all_of_the_weight_and_of_the_loads(n, root):
+    """A bar of 2000 N on its own frame or on another, with 3 N across at its first node."""
+    s = Structure((0.0, 0.0, -10.0))
+    s.frame("hub", np.zeros(3), mass=rigid_body(500.0, None, np.ones(3)))
+    s.join(rigid("weld", "ground", "hub", np.zeros(3)))
+    curve = straight(np.array([2.0, 0.0, 0.0]), np.eye(3), 10.0)
+    sections = uniform(np.full(6, 1e9), 20.0 * INERTIA)
+    names = s.beam("bar", discretise(curve, 10.0, sections, np.linspace(0, 1, n + 1)), root=root)
+    if root is None:
+        s.join(rigid("clamp", "ground", names[0], np.array([2.0, 0.0, 0.0])))
+    system = s.build()
+    forces = Forces.none(len(system))
+    forces.dead[s.index(names[0]), :3] = [0.0, 3.0, 0.0]
+    state = static_equilibrium(system, loads=forces)
+    at_root = system.internal_loads(state, "bar", forces)[0]
+    expected = [0, 3, -2000, 0, 0, 0 if root is None else -6]  # the load has an arm of 2 m
+    assert np.allclose(at_root, expected, atol=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("field", "shape", "expected"),
+    [("dead", (2, 6), r"\(4, 6\)"), ("follower", (4, 3), r"\(4, 6\)"),
+     ("mass", (4, 6), r"\(4, 6, 6\)")],
+)  # fmt: skip
+def test_forces_of_the_wrong_shape_are_refused(field, shape, expected):
+    system, _ = cantilever(3, SLENDER)
+    forces = Forces.none(len(system))
+    setattr(forces, field, np.zeros(shape))
+    with pytest.raises(InputError, match=f"{field}.*{expected}"):
+        static_equilibrium(system, loads=forces)
+
+
 def test_steady_rotation_of_a_bar_pulls_as_it_should():
     """Root tension m omega^2 L^2 / 2 of a bar that turns about its root."""
     s = Structure((0.0, 0.0, 0.0))

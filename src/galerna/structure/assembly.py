@@ -15,7 +15,7 @@ from .constraints import Constraint
 from .joints import ALL, Joint, Path
 from .pairs import Pairs
 from .redundancy import check_constraints
-from .system import System
+from .system import Root, System
 
 GROUND = "ground"
 
@@ -37,6 +37,7 @@ class Structure:
         self._pairs: list[dict[str, object]] = []
         self._constraints: list[Constraint] = []
         self._drives: list[tuple[int, Path]] = []
+        self._roots: dict[str, tuple[int, Array | None]] = {}  # None: all on the frame
         self.frame(GROUND, np.zeros(3))
 
     def frame(
@@ -68,13 +69,17 @@ class Structure:
         that stands, and no joint is needed.
         """
         names: list[str] = []
+        share = None
         for i in range(len(beam.span)):
             if i == 0 and root is not None:
-                self._add_at(root, beam.position[0], beam.rotation[0], beam.mass[0])
+                x, R = self.place(root, beam.position[0], beam.rotation[0])
+                share = moved(beam.mass[0], R, x)
+                self.add_mass(root, share)
                 names.append(root)
                 continue
             names.append(self.frame(f"{name}[{i}]", beam.position[i], beam.rotation[i],
                                     beam.mass[i]))  # fmt: skip
+        self._roots[name] = self.index(names[0]), share
         for e in range(len(beam.reference)):
             first, second = names[e], names[e + 1]
             offset = self.place(first, beam.position[e], beam.rotation[e])
@@ -127,6 +132,7 @@ class Structure:
             np.array(self._mass), np.array(self._weight), self.gravity,
             np.array(self._position), np.array(self._rotation), self._drives,
             list(zip(self._constraints, nodes, strict=True)),
+            {beam: self._root(*root) for beam, root in self._roots.items()},
         )  # fmt: skip
         if check:
             check_constraints(system)
@@ -138,9 +144,10 @@ class Structure:
         R = self._rotation[i]
         return R.T @ (position - self._position[i]), R.T @ rotation
 
-    def _add_at(self, frame: str, position: Array, rotation: Array, mass: Array) -> None:
-        x, R = self.place(frame, position, rotation)
-        self.add_mass(frame, moved(mass, R, x))
+    def _root(self, node: int, share: Array | None) -> Root:
+        if share is None:
+            return Root(node, self._mass[node], self._weight[node])
+        return Root(node, share, weight_of(share))
 
     def _drive(self, joint: Joint, place: tuple[Array, Array]) -> tuple[Array, Array]:
         """Make a joint's first side move in time."""

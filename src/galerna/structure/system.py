@@ -97,9 +97,29 @@ class Forces:
         )
         return Forces(factor * self.dead, factor * self.follower, *blocks)
 
+    def check(self, n: int) -> None:
+        """Raise InputError where an array does not belong to n frames."""
+        for name in Forces.__dataclass_fields__:
+            values = getattr(self, name)
+            shape = (n, 6) if name in ("dead", "follower") else (n, 6, 6)
+            if values is not None and np.shape(values) != shape:
+                raise InputError(
+                    f"forces, {name}", f"shape {np.shape(values)}, the system needs {shape}",
+                    "one row for each frame, the ground's first",
+                )  # fmt: skip
+
 
 LoadFunction = Callable[[State], Forces]
 Placement = Callable[[float], tuple[Array, Array]]  #: time -> position (3,), rotation (3,3)
+
+
+@dataclass(frozen=True, eq=False)
+class Root:
+    """A beam's first frame, and mass (6,6) and weight (4,) that the beam's root carries there."""
+
+    node: int
+    mass: Array
+    weight: Array
 
 
 @dataclass(eq=False, slots=True)
@@ -125,7 +145,8 @@ class System:
     """Frames, pairs and constraints ready for analysis; built by ``Structure``.
 
     ``mass`` (n,6,6) and ``weight`` (n,4: kg, kg m) of the frames, ``gravity`` (3,) m/s2,
-    ``drives`` the pairs whose frame A moves in its node's axes as a function of time.
+    ``drives`` the pairs whose frame A moves in its node's axes as a function of time,
+    ``roots`` what the beams bring to their first frames.
     """
 
     names: list[str]
@@ -138,6 +159,7 @@ class System:
     rotation: Array
     drives: list[tuple[int, Placement]] = field(default_factory=list)
     constraints: list[tuple[Constraint, Integers]] = field(default_factory=list)
+    roots: dict[str, Root] = field(default_factory=dict)
 
     @cached_property
     def solver(self) -> LinearSolver:
@@ -187,6 +209,7 @@ class System:
         The pairs' part stays valid until the next call.
         """
         n = len(self)
+        forces.check(n)
         residual, nodes = np.empty((n, 6)), np.empty((n, 6, 6))
         self.set_time(state.time)
         node_balance(
@@ -269,21 +292,36 @@ class System:
             self.still(), empty_answer(len(self.pairs.ends)),
         )  # fmt: skip
 
-    def internal_loads(self, state: State, beam: str) -> Array:
+    def internal_loads(self, state: State, beam: str, forces: Forces | None = None) -> Array:
         """Force N and moment N m (n+1,6) that the outer part of a beam puts on the inner one.
 
-        At the nodes of the beam, in their section axes; the first row holds the root bending
-        moments of a beam that is joined to its support.
+        At the nodes of the beam, in their section axes. The first row is the whole load on the
+        support, with mass, weight and ``forces`` of the first frame; the others up to the tip
+        are just outside of their nodes.
         """
         elements = [e for e, name in enumerate(self.pair_names) if name.startswith(beam + ":")]
         if not elements:
             beams = {name.partition(":")[0] for name in self.pair_names if ":" in name}
             raise InputError(beam, "no such beam", did_you_mean(beam, beams))
         wrench = self.pair_answer(state).node_wrench[elements]
+        wrench[0, :6] += self._root_balance(state, self.roots[beam], forces)
         root = elements[0]
         place = self.pairs.offset_rotation[root, 0], self.pairs.offset_position[root, 0]
         wrench[0, :6] = adjoint(*place).T @ wrench[0, :6]
         return np.vstack([-wrench[:, :6], wrench[-1:, 6:]])
+
+    def _root_balance(self, state: State, root: Root, forces: Forces | None) -> Array:
+        """Inertia minus weight and loads (6,) of a beam's root, in the axes of its frame."""
+        forces = forces or Forces.none(len(self))
+        forces.check(len(self))
+        at, still = slice(root.node, root.node + 1), np.zeros((1, 6, 6))
+        residual = np.empty((1, 6))
+        node_balance(
+            root.mass[None], root.weight[None], self.gravity, forces.dead[at], forces.follower[at],
+            state.rotation[at], state.velocity[at], state.acceleration[at],
+            still, still, residual, np.empty((1, 6, 6)),
+        )  # fmt: skip
+        return residual[0]
 
     def pair_motion(self, state: State) -> Array:
         """Relative motions (m,6) of the pairs at a state."""
