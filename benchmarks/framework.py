@@ -1,7 +1,7 @@
 """Speed and scale, measured: each benchmark returns figures beside what was wanted.
 
 A module lists its benchmarks in ``BENCHMARKS``; ``benchmarks/__init__.py`` lists
-the modules. A peer runs in the same process or session, so that a ratio holds on a
+the modules. A peer runs in the same process or right after, so that a ratio holds on a
 noisy machine; where it is not installed its columns stay empty.
 """
 
