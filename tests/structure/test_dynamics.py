@@ -12,7 +12,7 @@ from galerna.structure.assembly import Structure
 from galerna.structure.beam import discretise, straight
 from galerna.structure.bodies import point_mass, rigid_body
 from galerna.structure.checkpoint import load, save
-from galerna.structure.constraints import PrescribedVelocity
+from galerna.structure.constraints import PrescribedVelocity, TouchesPlane
 from galerna.structure.frames import rotation_about
 from galerna.structure.initial import velocity_violation, with_initial_accelerations
 from galerna.structure.integrators import Integrator, Scheme, Tolerance
@@ -53,6 +53,22 @@ def test_pendulum_converges_at_second_order():
     rates = [np.log2(a / b) for a, b in pairwise(errors)]
     assert min(rates) > 1.9
     assert errors[-1] < 1e-4
+
+
+def test_a_start_off_its_joints_is_refused():
+    system = pendulum()
+    state = system.initial_state()
+    state.position[1, 1] += 1e-3
+    with pytest.raises(InputError, match=r"pin: the initial positions violate .* 0.001"):
+        with_initial_accelerations(system, state)
+    with pytest.raises(InputError, match="pin"):
+        next(Integrator(system).march(state, 1e-3, 1))
+    s = Structure()
+    s.frame("ball", [0.0, 0.0, 1.2], mass=rigid_body(1.0, None, np.ones(3)))
+    s.constrain(TouchesPlane("floor", "ball", 1.0))
+    system = s.build()
+    with pytest.raises(InputError, match=r"floor: the initial positions violate .* 0.2"):
+        with_initial_accelerations(system, system.initial_state())
 
 
 def test_newmark_without_dissipation_is_of_second_order_and_warns():

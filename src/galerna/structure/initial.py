@@ -11,15 +11,16 @@ from galerna.contract import Array
 from galerna.errors import InputError
 
 from .frames import exp_se3
-from .system import Forces, State, System, in_body_axes
+from .system import Forces, State, System, in_body_axes, reach
 
 
 def with_initial_accelerations(system: System, state: State, forces: Forces | None = None) -> State:
     """The state with accelerations and multipliers that fit its positions and velocities.
 
     ``forces`` are those of body twists that stay constant; their mass blocks take part.
-    Raises InputError, with the joint named, where the velocities violate a constraint.
+    Raises InputError, with the joint named, where positions or velocities violate a constraint.
     """
+    check_positions(system, state)
     n = len(system)
     rest = replace(state.copy(), acceleration=np.zeros((n, 6)))
     rest.multiplier[:], rest.constraint_multiplier[:] = 0.0, 0.0
@@ -94,20 +95,33 @@ def _constrained_motions(system: System, state: State) -> Array:
     return np.vstack([motion, np.pad(column[:, None], ((0, 0), (0, 5)))])
 
 
+def check_positions(system: System, state: State) -> None:
+    """Raise InputError, with the joint named, where positions violate a constraint.
+
+    The limit is 1e-5 of the structure's extent, or of 1 m where that is more.
+    """
+    values = _constrained_motions(system, state)
+    values[_velocity_rows(system)] = 0.0
+    _check(system, values, 1e-5 * reach(system), "positions", "m, rad")
+
+
 def _check_velocities(system: System, state: State, rates: Array) -> None:
-    m = len(system.pairs.ends)
-    held = np.where(system.pairs.locked, np.abs(rates[:m]), 0.0)
     limit = 1e-5 * (1.0 + np.abs(state.velocity).max())
-    if held.max(initial=0.0) > limit:
-        worst = int(held.max(axis=1).argmax())
-        raise InputError(
-            system.pair_names[worst],
-            f"the initial velocities violate this joint by {held.max():.3g} (m/s, rad/s)",
-            "give velocities that the joint permits",
-        )
-    others = np.abs(rates[m:, 0])
-    if others.max(initial=0.0) > limit:
-        last_rows = np.cumsum(system.constraint_sizes)
-        worst = int(np.searchsorted(last_rows, others.argmax(), "right"))
-        name = system.constraints[worst][0].name
-        raise InputError(name, f"the initial velocities violate it by {others.max():.3g}")
+    _check(system, rates, limit, "velocities", "m/s, rad/s")
+
+
+def _check(system: System, values: Array, limit: float, kind: str, units: str) -> None:
+    """Name the joint or constraint whose value is the largest, if that is above the limit."""
+    m = len(system.pairs.ends)
+    held = np.where(system.pairs.locked, np.abs(values[:m]), 0.0).max(axis=1)
+    size = np.concatenate([held, np.abs(values[m:, 0])])
+    if size.max(initial=0.0) <= limit:
+        return
+    worst = int(size.argmax())
+    rows = [name for (c, _), r in zip(system.constraints, system.constraint_sizes, strict=True)
+            for name in [c.name] * r]  # fmt: skip
+    raise InputError(
+        [*system.pair_names, *rows][worst],
+        f"the initial {kind} violate this constraint by {size[worst]:.3g} ({units})",
+        f"give {kind} that it permits",
+    )

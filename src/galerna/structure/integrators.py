@@ -20,6 +20,7 @@ from galerna.errors import ConvergenceError, InputError
 
 from .blocks import FAST, apply, multiply3, multiply3_transposed
 from .frames import exp_se3, inverse_tangents
+from .initial import check_positions
 from .pairs import carried_on
 from .system import Balance, Forces, LoadFunction, State, System
 
@@ -237,7 +238,11 @@ class Integrator:
     def march(
         self, state: State, dt: float, steps: int, loads: LoadFunction | None = None
     ) -> Iterator[State]:
-        """The states after each of ``steps`` equal steps."""
+        """The states after each of ``steps`` equal steps.
+
+        Raises InputError, with the joint named, where the first positions violate a constraint.
+        """
+        check_positions(self.system, state)
         for _ in range(steps):
             state = self.step(state, dt, loads)
             yield state

@@ -11,7 +11,7 @@ from galerna.errors import ConvergenceError
 
 from .frames import ad, exp_se3
 from .pairs import Integers, carried_on
-from .system import Balance, Forces, LoadFunction, State, System, with_spin
+from .system import Balance, Forces, LoadFunction, State, System, reach, with_spin
 
 Correction = tuple[Array, Array, Array]
 Spin = tuple[Array, Array] | tuple[Array, Array, Integers]
@@ -139,18 +139,13 @@ def _size(system: System, balance: Balance, tolerance: float) -> float:
     force, that is the measure.
     """
     pairs = balance.pairs
-    reach = _reach(system)
-    rounding = 1e-15 * reach * float(np.abs(system.pairs.stiffness).max(initial=0.0))
+    extent = reach(system)
+    rounding = 1e-15 * extent * float(np.abs(system.pairs.stiffness).max(initial=0.0))
     force = 1e-6 + float(np.abs(pairs.node_wrench).max(initial=0.0)) + rounding / tolerance
-    gap = np.abs(pairs.motion[system.pairs.locked]).max(initial=0.0) / reach
+    gap = np.abs(pairs.motion[system.pairs.locked]).max(initial=0.0) / extent
     if balance.rows is not None:
-        gap = max(gap, np.abs(balance.rows.residual).max(initial=0.0) / reach)
+        gap = max(gap, np.abs(balance.rows.residual).max(initial=0.0) / extent)
     return max(float(np.abs(balance.residual).max()) / force, float(gap))
-
-
-def _reach(system: System) -> float:
-    """The structure's extent, m, at least 1."""
-    return max(1.0, float(np.ptp(system.position, axis=0).max()))
 
 
 def _moved(state: State, length: float, correction: Correction) -> State:

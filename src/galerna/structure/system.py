@@ -338,6 +338,11 @@ class System:
         return float(np.abs(np.concatenate([motion, *others])).max(initial=0.0))
 
 
+def reach(system: System) -> float:
+    """The structure's extent, m, at least 1."""
+    return max(1.0, float(np.ptp(system.position, axis=0).max()))
+
+
 def spin_twists(state: State, point: Array, angular_velocity: Array) -> Array:
     """Body twists (n,6) of a rigid rotation (3,) rad/s about a fixed point (3,) m."""
     spatial = np.concatenate([-np.cross(angular_velocity, point), angular_velocity])
