@@ -198,6 +198,34 @@ def test_long_bent_elements_with_offset_mass_keep_positive_inertia(n):
     assert weight_of(total)[1] == pytest.approx(36 * (10 - 9.8 * np.sin(1.2) / 1.2), rel=1e-4)
 
 
+class Narrow:
+    """A constraint on two frames that forgets the second one."""
+
+    name, frames, holonomic = "narrow", ("ground", "brick"), True
+
+    def violation(self, time, x, R, v):
+        return np.zeros(1)
+
+    def directions(self, time, x, R):
+        return np.ones((1, 6))
+
+
+def test_a_constraint_of_the_wrong_width_is_named():
+    s = Structure()
+    s.frame("brick", [0.0, 0, 0], mass=rigid_body(1.0, None, np.ones(3)))
+    s.constrain(Narrow())
+    with pytest.raises(InputError, match=r"narrow: .*\(1, 6\).*\(1, 12\)"):
+        s.build()
+
+
+def test_loads_that_are_no_numbers_are_named():
+    system, tip = cantilever(2, SLENDER)
+    forces = Forces.none(len(system))
+    forces.dead[tip, 1] = np.nan
+    with pytest.raises(InputError, match=r"beam\[2\]: the loads are not finite"):
+        static_equilibrium(system, loads=forces)
+
+
 def test_a_loose_structure_is_an_error_that_says_where():
     s = Structure()
     s.frame("brick", [0.0, 0, 0], mass=rigid_body(1.0, None, np.ones(3)))
@@ -230,5 +258,22 @@ def test_bad_input_is_named():
         rigid_body(np.nan)
     with pytest.raises(InputError, match="symmetric"):
         rigid_body(1.0, None, np.eye(3) + np.diag([0.5, 0.0], 1))
+    skew, heavy = np.diag([1.0, 1.0, 1.1]), np.diag([-1.0, 1, 1, 1, 1, 1])
+    with pytest.raises(InputError, match="rotation"):
+        s.frame("skew", np.zeros(3), skew)
+    with pytest.raises(InputError, match="rotation"):
+        s.join(Joint("skew", "ground", "brick", np.zeros(3), skew))
+    for place in (np.zeros(2), np.array([0.0, np.nan, 0.0])):
+        with pytest.raises(InputError, match=r"lost.*position"):
+            s.frame("lost", place)
+        with pytest.raises(InputError, match=r"lost.*position"):
+            s.join(rigid("lost", "ground", "brick", place))
+    for mass in (heavy, np.nan * heavy, np.eye(3)):
+        with pytest.raises(InputError, match=r"brick.*mass"):
+            s.add_mass("brick", mass)
+    with pytest.raises(InputError, match="steps"):
+        static_equilibrium(cantilever(2, SLENDER)[0], steps=0)
+    with pytest.raises(InputError, match=r"12 m.*10 m"):
+        discretise(straight(np.zeros(3), np.eye(3), 10.0), 12.0, SLENDER, np.array([0.0, 1.0]))
     with pytest.raises(InputError, match="not positive definite"):
         cantilever(2, uniform(np.array([1.0, 1, 1, 1, -1, 1]), INERTIA))

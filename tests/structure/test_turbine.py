@@ -133,6 +133,18 @@ def test_an_unknown_rotor_is_refused(nrel):
         turbine_system(nrel, TurbineOptions(**FEW, rotor="spinning"))
 
 
+@pytest.mark.parametrize("n", [-1, 2.5])
+def test_elements_are_whole_numbers(n):
+    for part in ("blade_elements", "tower_elements"):
+        with pytest.raises(InputError, match=part):
+            TurbineOptions(**{part: n})
+
+
+def test_two_blades_have_no_multiblade_coordinates(nrel):
+    with pytest.raises(InputError, match="2 blades"):
+        whirl_modes(replace(nrel, number_of_blades=2), 1.0)
+
+
 def test_multiblade_coordinates_change_nothing_at_standstill(nrel):
     options = TurbineOptions(**FEW, gravity=(0.0, 0.0, 0.0))
     whirling = whirl_modes(nrel, 0.0, 8, options)

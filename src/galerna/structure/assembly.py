@@ -46,9 +46,11 @@ class Structure:
         """A frame at ``position`` (3,) m with axes ``rotation`` (3,3), and a mass matrix (6,6)."""
         if name in self.frames:
             raise InputError(name, "there is a frame of this name already", "choose another")
+        R = np.eye(3) if rotation is None else rotation
+        _check_place(name, position, R)
         self.frames[name] = len(self.frames)
         self._position.append(np.array(position, dtype=float))
-        self._rotation.append(np.array(np.eye(3) if rotation is None else rotation, dtype=float))
+        self._rotation.append(np.array(R, dtype=float))
         self._mass.append(np.zeros((6, 6)))
         self._weight.append(np.zeros(4))
         if mass is not None:
@@ -58,6 +60,11 @@ class Structure:
     def add_mass(self, frame: str, mass: Array, weighs: bool = True) -> None:
         """Add a mass matrix (6,6) in the frame's axes; added mass of water does not weigh."""
         i = self.index(frame)
+        if np.shape(mass) != (6, 6) or not (np.isfinite(mass).all() and (np.diag(mass) >= 0).all()):
+            raise InputError(
+                frame, "its mass must be a matrix (6,6) of finite numbers, none negative "
+                "on the diagonal", "rigid_body makes one",
+            )  # fmt: skip
         self._mass[i] = self._mass[i] + mass
         if weighs:
             self._weight[i] = self._weight[i] + weight_of(mass)
@@ -94,6 +101,7 @@ class Structure:
         """Add a joint or spring; raises InputError where its name is taken."""
         if any(pair["name"] == joint.name for pair in self._pairs):
             raise InputError(joint.name, "there is a joint of this name already", "choose another")
+        _check_place(joint.name, joint.position, joint.axes)
         places = [
             self.place(frame, joint.position, joint.axes) for frame in (joint.first, joint.second)
         ]
@@ -134,6 +142,7 @@ class Structure:
             list(zip(self._constraints, nodes, strict=True)),
             {beam: self._root(*root) for beam, root in self._roots.items()},
         )  # fmt: skip
+        system.constraint_sizes  # noqa: B018  refuses constraints of the wrong shape
         if check:
             check_constraints(system)
         return system
@@ -196,4 +205,16 @@ class Structure:
             damped=np.abs(damping).max(axis=(1, 2), initial=0.0) > 0.0,
             preload=np.zeros((len(damping), 6)),
             locked=column("locked", 6) != 0.0,
+        )
+
+
+def _check_place(name: str, position: Array, rotation: Array) -> None:
+    """Raise InputError for what is no point (3,) or no right-handed rotation (3,3)."""
+    if np.shape(position) != (3,) or not np.isfinite(position).all():
+        raise InputError(name, f"the position {np.asarray(position).tolist()} is not three numbers")
+    R = np.asarray(rotation, dtype=float)
+    proper = R.shape == (3, 3) and np.allclose(R.T @ R, np.eye(3), rtol=0.0, atol=1e-6)
+    if not proper or np.linalg.det(R) < 0.0:
+        raise InputError(
+            name, f"{R.tolist()} is not a rotation", "three right-handed unit axes as columns"
         )

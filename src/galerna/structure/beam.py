@@ -71,10 +71,12 @@ def discretise(
     """Elements between the nodes at the fractions ``span`` (n+1,) of an axis of ``length`` m.
 
     Raises InputError if a section's stiffness is not symmetric and positive definite, its
-    damping is negative, ``span`` does not grow or a node would have no inertia.
+    damping is negative, ``span`` does not grow, ``length`` is not the axis's or a node would
+    have no inertia.
     """
     span = np.asarray(span, dtype=float)
     _check(sections, span, name)
+    _check_length(curve, length, span, name)
     x, R = curve(span)
     n = len(span) - 1
     mass = np.zeros((n + 1, 6, 6))
@@ -127,7 +129,7 @@ def interpolate(sections: SectionProperties, table: Array, span: Array) -> Array
 
 
 def _check(sections: SectionProperties, span: Array, name: str) -> None:
-    if not (np.diff(span) > 0.0).all():
+    if len(span) < 2 or not (np.diff(span) > 0.0).all():
         raise InputError(name, f"the nodes' fractions {span.tolist()} do not grow")
     if not (sections.damping >= 0.0).all():
         raise InputError(name, f"the damping {sections.damping.tolist()} s is not positive or zero")
@@ -142,6 +144,14 @@ def _check(sections: SectionProperties, span: Array, name: str) -> None:
                 f"{'symmetric' if lopsided else 'positive definite'}",
                 "stiffness matrices are symmetric with positive eigenvalues",
             )
+
+
+def _check_length(curve: Curve, length: float, span: Array, name: str) -> None:
+    """Refuse a length more than 1 % off the curve's own."""
+    points, _ = curve(np.linspace(span[0], span[-1], 201))
+    found = float(np.linalg.norm(np.diff(points, axis=0), axis=1).sum() / (span[-1] - span[0]))
+    if not abs(found - length) <= 0.01 * length:
+        raise InputError(name, f"a length of {length:g} m is given, the axis has {found:.4g} m")
 
 
 def _integration_points(start: float, end: float, stations: Array) -> tuple[Array, Array]:

@@ -41,10 +41,10 @@ class Constraint(Protocol):
 
 
 class RollingWithoutSlip:
-    """A disc or sphere on the plane z = ``height``: the touching point does not slip.
+    """A disc or sphere on a horizontal plane: the touching point does not slip.
 
     ``radius`` m; a disc's axis is ``axis`` (3,) in body axes, a sphere has none. The
-    contact is kept on the plane by ``TouchesPlane``.
+    contact is kept on the plane by ``TouchesPlane``, which alone knows its height.
     """
 
     holonomic = False

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from galerna.contract import Array
-from galerna.errors import ConvergenceError
+from galerna.errors import ConvergenceError, InputError
 
 from .frames import ad, exp_se3
 from .pairs import Integers, carried_on
@@ -30,8 +30,11 @@ def static_equilibrium(
     ``loads`` are forces or a function of the state. ``spin`` is a point (3,) m and an
     angular velocity (3,) rad/s with which the machine turns steadily, as a whole or in the
     nodes that are given third; its inertia takes part. ``tolerance`` is the residual over the
-    largest force at a frame. Raises ConvergenceError if even small load steps fail.
+    largest force at a frame. Raises ConvergenceError if even small load steps fail,
+    InputError for loads that are not finite or no whole number of steps.
     """
+    if steps < 1 or steps != int(steps):
+        raise InputError("steps", f"{steps} is not a whole number from 1 on")
     state = system.initial_state() if state is None else state.copy()
     solved, step, smallest = 0.0, 1.0 / steps, 1.0 / (64 * steps)
     while solved < 1.0 - 1e-12:
@@ -121,6 +124,10 @@ def _balance(
     forces = Forces.none(len(system)) if loads is None else loads
     if callable(forces):
         forces = forces(state)
+    forces.check(len(system))
+    finite = np.isfinite(np.hstack([forces.dead, forces.follower])).all(axis=1)
+    if not finite.all() and np.isfinite(state.position).all():
+        raise InputError(system.names[int(finite.argmin())], "the loads are not finite numbers")
     balance = system.balance(
         state, forces.scaled(factor), velocity_tangent, system.still(), factor, carried
     )

@@ -173,7 +173,17 @@ class System:
     def constraint_sizes(self) -> list[int]:
         """Number of rows of each constraint beside the pairs."""
         x, R = self.position, self.rotation
-        return [len(c.directions(0.0, x[k], R[k])) for c, k in self.constraints]
+        sizes = []
+        for c, k in self.constraints:
+            rows = len(c.violation(0.0, x[k], R[k], np.zeros((len(k), 6))))
+            shape = np.shape(c.directions(0.0, x[k], R[k]))
+            if shape != (rows, 6 * len(k)):
+                raise InputError(
+                    c.name, f"its directions have the shape {shape}, expected {(rows, 6 * len(k))}",
+                    "a row for each violation, six columns for each frame",
+                )  # fmt: skip
+            sizes.append(rows)
+        return sizes
 
     def __len__(self) -> int:
         return len(self.names)

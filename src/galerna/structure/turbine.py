@@ -51,6 +51,12 @@ class TurbineOptions:
     pitch_motion: tuple[Angle, ...] | None = None
     gravity: tuple[float, float, float] = (0.0, 0.0, -9.80665)
 
+    def __post_init__(self) -> None:
+        for name in ("blade_elements", "tower_elements"):
+            n = getattr(self, name)
+            if not isinstance(n, int | np.integer) or n < 0:
+                raise InputError(name, f"{n!r} is not a whole number from 0 on")
+
 
 @dataclass(frozen=True, eq=False)
 class TurbineSystem:

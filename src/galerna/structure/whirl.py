@@ -14,6 +14,7 @@ import numpy as np
 from scipy.sparse import block_diag, coo_matrix, csc_matrix, eye
 
 from galerna.contract import Array
+from galerna.errors import InputError
 from galerna.turbine.model import Turbine
 
 from .constraints import Triplets
@@ -42,8 +43,14 @@ def whirl_modes(
 ) -> WhirlModes:
     """Modes of the machine with its rotor turning freely at ``speed`` rad/s.
 
-    For three or more equal blades; whirl appears in the frequencies as seen from the ground.
+    For three or more equal blades, else InputError; whirl appears in the frequencies as seen
+    from the ground.
     """
+    if turbine.number_of_blades < 3:
+        raise InputError(
+            turbine.name, f"{turbine.number_of_blades} blades, whirl modes need three or more",
+            "with fewer, coefficients vary in time in any coordinates",
+        )  # fmt: skip
     options = replace(options or TurbineOptions(), gravity=(0.0, 0.0, 0.0), azimuth=0.0)
     held = turbine_system(turbine, replace(options, rotor="locked"))
     model = turbine_system(turbine, replace(options, rotor="free"))
