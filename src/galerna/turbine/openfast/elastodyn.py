@@ -24,6 +24,12 @@ from galerna.units import DEG
 
 #: A direction that ElastoDyn leaves out adds this fraction of the bending flexibility.
 RIGID = 1e-4
+#: what ElastoDyn does not say of a modal part
+_MODAL = (
+    "ElastoDyn gives no shear, axial and torsional stiffness and no rotary inertia; "
+    f"the stiffnesses are rigid (they add {RIGID:g} of the bending flexibility), the "
+    "inertia is zero"
+)
 _PERCENT = 0.01
 
 
@@ -106,11 +112,7 @@ def read_blade_structure(deck: Deck, length: float, notes: list[str]) -> Section
     mass = _positive(deck, table, "BMassDen", deck.number("AdjBlMs", 1.0, 0.0))
     flap = _positive(deck, table, "FlpStff", deck.number("AdjFlSt", 1.0, 0.0))
     edge = _positive(deck, table, "EdgStff", deck.number("AdjEdSt", 1.0, 0.0))
-    notes.append(
-        "blade: ElastoDyn gives no shear, axial and torsional stiffness and no rotary inertia; "
-        f"the stiffnesses are rigid (they add {RIGID:g} of the bending flexibility), the "
-        "inertia is zero"
-    )
+    notes.append(f"blade: {_MODAL}")
     return SectionProperties(
         span=span,
         stiffness=_modal_stiffness(edge, flap, length),
@@ -127,11 +129,7 @@ def read_tower_structure(deck: Deck, length: float, notes: list[str]) -> Section
     mass = _positive(deck, table, "TMassDen", deck.number("AdjTwMa", 1.0, 0.0))
     fore_aft = _positive(deck, table, "TwFAStif", deck.number("AdjFASt", 1.0, 0.0))
     side_side = _positive(deck, table, "TwSSStif", deck.number("AdjSSSt", 1.0, 0.0))
-    notes.append(
-        "tower: ElastoDyn gives no shear, axial and torsional stiffness and no rotary inertia; "
-        f"the stiffnesses are rigid (they add {RIGID:g} of the bending flexibility), the "
-        "inertia is zero"
-    )
+    notes.append(f"tower: {_MODAL}")
     return SectionProperties(
         span=span,
         stiffness=_modal_stiffness(side_side, fore_aft, length),
