@@ -1,0 +1,1 @@
+"""The unsteady vortex lattice: lifting surfaces and free wakes as sheets of vortex rings."""

@@ -1,0 +1,55 @@
+"""A thin lifting surface cut into panels, and the vortex rings that stand on it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from galerna.contract import Array
+
+
+@dataclass(eq=False)
+class Lattice:
+    """Panels (m,n) of a surface between corners (m+1,n+1,3) m.
+
+    Rows run from the leading to the trailing edge, columns along the span; see ``sheet``.
+    With ``rings`` "quarter_chord" a ring's upstream side lies on its panel's quarter chord and
+    the collocation point on three quarters, which is exact for a flat plate in plane flow
+    (James 1972); with "edges" rings and panels coincide and the point is the ring's centre.
+    """
+
+    corners: Array
+    rings: str = "quarter_chord"
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Panels along the chord and along the span."""
+        return self.corners.shape[0] - 1, self.corners.shape[1] - 1
+
+    @property
+    def vertices(self) -> Array:
+        """Corners (m+1,n+1,3) of the rings; the last row lies behind the trailing edge."""
+        if self.rings == "edges":
+            return self.corners
+        panel = np.diff(self.corners, axis=0)
+        return self.corners + 0.25 * np.concatenate([panel, panel[-1:]])
+
+    @property
+    def collocation(self) -> Array:
+        """Points (m,n,3) at which no flow passes through the surface."""
+        place = 0.5 if self.rings == "edges" else 0.75
+        along = (1.0 - place) * self.corners[:-1] + place * self.corners[1:]
+        return 0.5 * (along[:, :-1] + along[:, 1:])
+
+    @property
+    def area_vectors(self) -> Array:
+        """Normals (m,n,3) times panel areas, m2, towards the suction side."""
+        x = self.corners
+        return 0.5 * np.cross(x[1:, 1:] - x[:-1, :-1], x[:-1, 1:] - x[1:, :-1])
+
+    @property
+    def normals(self) -> Array:
+        """Unit normals (m,n,3) towards the suction side."""
+        vectors = self.area_vectors
+        return vectors / np.linalg.norm(vectors, axis=-1, keepdims=True)
