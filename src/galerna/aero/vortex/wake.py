@@ -1,0 +1,258 @@
+"""The wakes of several surfaces, whose rows are labelled by age.
+
+Row k holds the fluid that left the trailing edge a_k ago; row 0 is the trailing edge itself.
+While a time dt passes every vertex moves with the flow and ages by dt. The new row k, of age
+a_k, then lies between the moved rows k (age a_k + dt) and k-1 (age a_{k-1} + dt), at the fraction
+
+    C_k = dt / (a_k - a_{k-1})                                                             (1)
+
+towards row k-1, and the circulation of the panel between rows k-1 and k becomes
+
+    G_k <- (1 - C_k) G_k + C_k G_{k-1},    G_0 the trailing edge's over dt                 (2)
+
+which is the dissertation's convection equation with its Courant number (eq. 4.4) and, in the same
+fraction, its remeshing (4.1.2). It conserves the sum of G_k (a_k - a_{k-1}) but for what enters
+and leaves. With equal panels of age dt, C = 1 and rows shift (eq. 2.71). Rows of a rotor are
+interpolated about their centre by slerp (eq. 4.6), so that a helix stays the same helix.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from math import atan2, cos, sin, sqrt
+
+import numpy as np
+from numba import njit
+
+from galerna.aero.vortex.cores import VortexCore
+from galerna.aero.vortex.sheet import Sheet
+from galerna.contract import Array
+from galerna.errors import InputError
+
+STEP_TOLERANCE = 1e-6  #: of the first panel's age, by which a step may exceed it
+
+
+@dataclass(frozen=True, eq=False)
+class RotorAxis:
+    """The axis that a rotor's wake winds about: a point (3,) m on it and its direction (3,)."""
+
+    origin: Array
+    direction: Array
+
+
+@dataclass(frozen=True, eq=False)
+class Wake:
+    """Wakes of surfaces with n panels across: K+1 rows of common ``ages`` (K+1,) s, from 0.
+
+    ``vertices`` (K+1,n+1,3) m and ``circulation`` (K,n) m2/s for each surface; ``centre``
+    (K+1,3) m, what a rotor's rows turn about, moves with the fluid too.
+    """
+
+    ages: Array
+    vertices: tuple[Array, ...]
+    circulation: tuple[Array, ...]
+    centre: Array | None = None
+
+    @property
+    def step(self) -> float:
+        """The age of the first panel, s: the longest step."""
+        return float(self.ages[1])
+
+    @property
+    def panels(self) -> int:
+        """Number of panels of all surfaces."""
+        return sum(g.size for g in self.circulation)
+
+    def advanced(
+        self,
+        velocity: Sequence[Array],
+        elapsed: float,
+        shed: Sequence[Array],
+        axis: RotorAxis | None = None,
+    ) -> Wake:
+        """The wake ``elapsed`` s later; row 0 of its vertices is where the fluid carried it.
+
+        ``velocity`` (K+1,n+1,3) m/s moves the vertices; ``shed`` (n,) m2/s is the mean circulation
+        of the trailing edge in this time. Raises InputError for a step beyond the first panel.
+        """
+        fraction = courant_numbers(self.ages, elapsed)
+        origins, centre = self._centres(velocity, elapsed, fraction, axis)
+        direction = np.zeros(3) if axis is None else axis.direction
+        vertices = tuple(np.empty_like(x) for x in self.vertices)
+        circulation = tuple(np.empty_like(g) for g in self.circulation)
+        for s, (x, u, g) in enumerate(zip(self.vertices, velocity, self.circulation, strict=True)):
+            _move(x, u, elapsed, fraction, origins, direction, vertices[s])
+            _convect(g, shed[s], fraction, circulation[s])
+        return replace(self, vertices=vertices, circulation=circulation, centre=centre)
+
+    def _centres(
+        self, velocity: Sequence[Array], elapsed: float, fraction: Array, axis: RotorAxis | None
+    ) -> tuple[Array, Array | None]:
+        """Moved centres (K+1,3) that rows turn about, and those of the new rows."""
+        if axis is None or self.centre is None:
+            return np.zeros((len(self.ages), 3)), None
+        mean = sum(u.mean(axis=1) for u in velocity) / len(velocity)
+        moved = self.centre + elapsed * mean
+        centre = interpolated(moved, fraction)
+        centre[0] = axis.origin
+        return moved, centre
+
+    def attach(self, edges: Sequence[Array]) -> None:
+        """Put row 0 on the trailing edges (n+1,3) m of the surfaces."""
+        for x, edge in zip(self.vertices, edges, strict=True):
+            x[0] = edge
+
+    def core_radius(self, core: VortexCore | None) -> tuple[Array | float, ...]:
+        """Core radii (K+1,1) m of each surface's rows, from their age and strongest circulation.
+
+        Row 0 keeps the singular vortex of the bound ring that it coincides with.
+        """
+        if core is None:
+            return tuple(0.0 for _ in self.vertices)
+        return tuple(_row_cores(core, self.ages, g) for g in self.circulation)
+
+    def sheets(self, core: VortexCore | None = None, first: int = 0) -> list[Sheet]:
+        """What induces velocity: a sheet of each surface, from row ``first`` on."""
+        radii = self.core_radius(core)
+        return [
+            Sheet(x[first:], g[first:], r if np.ndim(r) == 0 else r[first:])  # type: ignore[index]
+            for x, g, r in zip(self.vertices, self.circulation, radii, strict=True)
+        ]
+
+    def first_panels(self, core: VortexCore | None = None) -> list[Sheet]:
+        """Sheets of the panels between rows 0 and 1, which move with the trailing edges."""
+        radii = self.core_radius(core)
+        return [
+            Sheet(x[:2], g[:1], r if np.ndim(r) == 0 else r[:2])  # type: ignore[index]
+            for x, g, r in zip(self.vertices, self.circulation, radii, strict=True)
+        ]
+
+
+def straight_wake(
+    ages: Array, edges: Sequence[Array], drift: Sequence[Array], centre: Array | None = None
+) -> Wake:
+    """A wake without circulation behind trailing edges (n+1,3) m, which drift away from it.
+
+    ``drift`` (n+1,3) m/s is the wind less the velocity of the edge, for each surface.
+    """
+    vertices = tuple(e + ages[:, None, None] * u for e, u in zip(edges, drift, strict=True))
+    circulation = tuple(np.zeros((len(ages) - 1, len(e) - 1)) for e in edges)
+    return Wake(np.asarray(ages, float), vertices, circulation, centre)
+
+
+def helical_wake(
+    ages: Array, edges: Sequence[Array], axis: RotorAxis, rotor_speed: float, wind: Array
+) -> Wake:
+    """A wake without circulation that trailing edges (n+1,3) m leave in turning.
+
+    The rotor turns at ``rotor_speed`` rad/s about ``axis``, and ``wind`` (3,) m/s carries the
+    wake away: a row of age a is the edge turned back by a times the speed, and blown on.
+    """
+    vertices = tuple(np.empty((len(ages), len(e), 3)) for e in edges)
+    for x, edge in zip(vertices, edges, strict=True):
+        for k, age in enumerate(ages):
+            back = _turned(edge - axis.origin, axis.direction, -rotor_speed * age)
+            x[k] = axis.origin + back + age * wind
+    circulation = tuple(np.zeros((len(ages) - 1, len(e) - 1)) for e in edges)
+    return Wake(np.asarray(ages, float), vertices, circulation, axis.origin + ages[:, None] * wind)
+
+
+def courant_numbers(ages: Array, elapsed: float) -> Array:
+    """C_k (K,) of eq. (1); InputError where a step is longer than the first panel."""
+    width = np.diff(ages)
+    if np.any(width <= 0.0) or width.min() < width[0] * (1.0 - STEP_TOLERANCE):
+        raise InputError("ages of the wake", "a panel is narrower than the first", "let them grow")
+    if elapsed > width[0] * (1.0 + STEP_TOLERANCE):
+        raise InputError(
+            "time step",
+            f"{elapsed:.6g} s moves the trailing edge by more than the first wake panel, which is "
+            f"{width[0]:.6g} s wide",
+            f"use a step of at most {width[0]:.6g} s, or wider wake panels",
+        )
+    fraction = elapsed / width
+    fraction[fraction > 1.0 - STEP_TOLERANCE] = 1.0
+    return fraction
+
+
+def interpolated(moved: Array, fraction: Array) -> Array:
+    """Rows (K+1,...) at their own ages from moved rows, linearly; row 0 stays."""
+    out = moved.copy()
+    weight = fraction.reshape(-1, *(1,) * (moved.ndim - 1))
+    out[1:] += weight * (moved[:-1] - moved[1:])
+    return out
+
+
+def _row_cores(core: VortexCore, ages: Array, circulation: Array) -> Array:
+    strongest = np.abs(circulation).max(axis=1)
+    radius = core.radius(ages, np.concatenate([strongest[:1], strongest]))
+    radius[0] = 0.0
+    return radius[:, None]
+
+
+def _turned(arm: Array, direction: Array, angle: float) -> Array:
+    """Vectors (...,3) turned by an angle rad about a unit direction (3,)."""
+    along = (arm @ direction)[..., None] * direction
+    return along + np.cos(angle) * (arm - along) + np.sin(angle) * np.cross(direction, arm)
+
+
+@njit(cache=True, error_model="numpy")
+def _convect(circulation, shed, fraction, out):  # type: ignore[no-untyped-def]
+    """Eq. (2)."""
+    for k in range(circulation.shape[0]):
+        for j in range(circulation.shape[1]):
+            newer = shed[j] if k == 0 else circulation[k - 1, j]
+            out[k, j] = circulation[k, j] + fraction[k] * (newer - circulation[k, j])
+            if fraction[k] == 1.0:
+                out[k, j] = newer
+
+
+@njit(cache=True, error_model="numpy")
+def _move(x, velocity, elapsed, fraction, origins, axis, out):  # type: ignore[no-untyped-def]
+    """Move vertices and put the new rows between them."""
+    old, new = np.empty(3), np.empty(3)
+    turns = axis[0] != 0.0 or axis[1] != 0.0 or axis[2] != 0.0
+    for j in range(x.shape[1]):
+        for i in range(3):
+            new[i] = out[0, j, i] = x[0, j, i] + elapsed * velocity[0, j, i]
+        for k in range(1, x.shape[0]):
+            for i in range(3):
+                old[i] = x[k, j, i] + elapsed * velocity[k, j, i]
+            c = fraction[k - 1]
+            if c == 1.0:
+                out[k, j] = new
+            elif turns:
+                _between_turns(old, new, origins[k], origins[k - 1], axis, c, out[k, j])
+            else:
+                for i in range(3):
+                    out[k, j, i] = old[i] + c * (new[i] - old[i])
+            new[:] = old
+
+
+@njit(cache=True, error_model="numpy")
+def _between_turns(a, b, centre_a, centre_b, axis, c, out):  # type: ignore[no-untyped-def]
+    """The point at fraction c from a to b: along the axis and in radius linear, in angle too."""
+    along_a = along_b = 0.0
+    for i in range(3):
+        along_a += (a[i] - centre_a[i]) * axis[i]
+        along_b += (b[i] - centre_b[i]) * axis[i]
+    p, q, side = np.empty(3), np.empty(3), np.empty(3)
+    for i in range(3):
+        p[i] = a[i] - centre_a[i] - along_a * axis[i]
+        q[i] = b[i] - centre_b[i] - along_b * axis[i]
+    for i in range(3):
+        side[i] = axis[i - 2] * p[i - 1] - axis[i - 1] * p[i - 2]
+    radius_a = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2])
+    radius_b = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2])
+    ahead = side[0] * q[0] + side[1] * q[1] + side[2] * q[2]
+    angle = c * atan2(ahead, p[0] * q[0] + p[1] * q[1] + p[2] * q[2])
+    stretch = 1.0 - c + c * radius_b / radius_a
+    for i in range(3):
+        out[i] = (
+            centre_a[i]
+            + c * (centre_b[i] - centre_a[i])
+            + (along_a + c * (along_b - along_a)) * axis[i]
+            + stretch * (cos(angle) * p[i] + sin(angle) * side[i])
+            if radius_a > 0.0
+            else a[i] + c * (b[i] - a[i])
+        )
