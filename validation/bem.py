@@ -19,7 +19,7 @@ from galerna.units import DEG, RPM
 
 from .framework import Case, Check
 from .minnema_pierce import corrected_loads
-from .rotors import columns, straightened, table, turning
+from .rotors import columns, like_the_avatar, straightened, table, turning
 
 AERODYN = "OpenFAST v5.0.0, aerodyn_driver, BEM_Mod 2"
 STEADY = "welib, NREL 5 MW steady table Rigid_ROSCO (OpenFAST)"
@@ -31,7 +31,6 @@ Loads = Callable[[Turbine, BemOptions, float, float, float], tuple[float, float]
 INTERIOR = (0.25, 0.90)  #: of the radius; the ends depend on the closure of high thrust
 FORCE, INDUCTION, ANGLE, INTEGRAL = 0.01, 0.005, 0.1, 0.01
 BELOW_RATED, PITCH, ABOVE_RATED = 0.015, 0.2, 0.02
-AVATAR = (9.26, 0.66)  #: tip-speed ratio and thrust coefficient of the dissertation's table 4.3
 
 #: AeroDyn's settings in the deck of the steady table
 DECK = BemOptions(
@@ -210,7 +209,7 @@ def dtu_rotor_speeds() -> Iterator[Check]:
 
 def yawed_rotor() -> Iterator[Check]:
     """Where a yawed rotor's blade is loaded most and least, with and without a skewed wake."""
-    turbine, wind, speed, pitch = _like_the_avatar()
+    turbine, wind, speed, pitch = like_the_avatar()
     near = 30.0
     for skewed in ("none", "pitt_peters", "vortex_cylinder"):
         options = BemOptions(skewed_wake=skewed, tower_influence=False)
@@ -230,7 +229,7 @@ def yawed_rotor() -> Iterator[Check]:
 
 def yaw_losses() -> Iterator[Check]:
     """Mean thrust and power lost at 30 deg of yaw error; the dissertation's rotor is another."""
-    turbine, wind, speed, pitch = _like_the_avatar()
+    turbine, wind, speed, pitch = like_the_avatar()
     source = "dissertation table 4.4, AVATAR rotor, BEM skew"
     options = BemOptions(skewed_wake="pitt_peters", tower_influence=False)
     means = []
@@ -239,20 +238,6 @@ def yaw_losses() -> Iterator[Check]:
         means.append([float(turn[key].mean()) for key in ("rotor_thrust", "rotor_power")])
     for k, (name, wanted) in enumerate((("thrust", -0.20), ("power", -0.35))):
         yield Check(f"change of {name}", means[1][k] / means[0][k] - 1.0, wanted, source)
-
-
-@cache
-def _like_the_avatar() -> tuple[Turbine, float, float, float]:
-    """The straightened DTU 10 MW, wind m/s, rpm and the pitch deg of the AVATAR's thrust."""
-    turbine, wind = straightened(turbines.load("dtu10mw")), 10.5
-    ratio, thrust = AVATAR
-    speed = ratio * wind / turbine.rotor_radius / RPM
-
-    def excess(pitch: float) -> float:
-        point = steady_rotor(turbine, wind, speed * RPM, pitch * DEG)
-        return float(point["thrust_coefficient"]) - thrust
-
-    return turbine, wind, speed, float(brentq(excess, 0.0, 10.0, xtol=1e-3))
 
 
 def _untilted(turbine: Turbine) -> Turbine:

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import csv
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
+from scipy.optimize import brentq
 
+from galerna import turbine as turbines
 from galerna.aero.bem.model import BladeElementMomentum
 from galerna.aero.bem.options import BemOptions
-from galerna.aero.bem.steady import UniformWind
-from galerna.contract import Array
+from galerna.aero.bem.steady import UniformWind, steady_rotor
+from galerna.contract import Array, Inflow, LoadModel
 from galerna.kinematics import PrescribedMotion, PrescribedOperation
 from galerna.signals import Signal
 from galerna.turbine.model import Turbine
@@ -19,6 +22,9 @@ from galerna.units import AIR_DENSITY, DEG, RPM
 
 DATA = Path(__file__).parent / "data"
 STEPS = 48  #: per turn
+AVATAR = (9.26, 0.66)  #: tip-speed ratio and thrust coefficient of the dissertation's table 4.3
+
+Options = BemOptions  #: of any aerodynamic model of the rotor
 
 
 def table(name: str) -> list[dict[str, str]]:
@@ -53,35 +59,68 @@ def straightened(turbine: Turbine) -> Turbine:
 
 def turning(
     turbine: Turbine,
-    options: BemOptions,
+    options: Options,
     wind_speed: float,
     rotor_speed_rpm: float,
     pitch_deg: float,
     *,
     yaw_deg: float = 0.0,
     turns: int = 4,
+    steps: int = STEPS,
     air_density: float = AIR_DENSITY,
 ) -> dict[str, Array]:
     """Channels over the last of some turns of the rigid machine in uniform wind, and azimuth."""
     wind = UniformWind(np.array([wind_speed, 0.0, 0.0]))
-    model = BladeElementMomentum(turbine, wind, air_density=air_density, options=options)
-    blades = turbine.number_of_blades
-    operation = PrescribedOperation(
-        Signal.constant(rotor_speed_rpm * RPM),
-        tuple(Signal.constant(pitch_deg * DEG) for _ in range(blades)),
-        Signal.constant(yaw_deg * DEG),
+    model = load_model(turbine, wind, options, air_density)
+    operation = constant_operation(turbine, rotor_speed_rpm, pitch_deg, yaw_deg)
+    result = march(turbine, model, operation, 60.0 / rotor_speed_rpm / steps, turns * steps)
+    last = {name: values[-steps:] for name, values in result.items()}
+    azimuth = np.arange(1, steps + 1) * 360.0 / steps
+    return {**last, "azimuth_deg": azimuth, "radius": model.coordinates["radius"]}
+
+
+def load_model(
+    turbine: Turbine, inflow: Inflow, options: Options, air_density: float = AIR_DENSITY
+) -> LoadModel:
+    """The aerodynamic model that the options are those of."""
+    return BladeElementMomentum(turbine, inflow, air_density=air_density, options=options)
+
+
+def constant_operation(
+    turbine: Turbine, rotor_speed_rpm: float, pitch_deg: float, yaw_deg: float = 0.0
+) -> PrescribedOperation:
+    """All blades at one pitch, the rotor at one speed, the nacelle at one yaw."""
+    pitch = tuple(Signal.constant(pitch_deg * DEG) for _ in range(turbine.number_of_blades))
+    return PrescribedOperation(
+        Signal.constant(rotor_speed_rpm * RPM), pitch, Signal.constant(yaw_deg * DEG)
     )
+
+
+def march(
+    turbine: Turbine, model: LoadModel, operation: PrescribedOperation, dt: float, steps: int
+) -> dict[str, Array]:
+    """The model's channels after each of the steps of the rigid machine, time first."""
     machine = PrescribedMotion(turbine, operation, [model.stations])
     (motion,) = machine.motions
-    dt = 60.0 / rotor_speed_rpm / STEPS
     records = []
-    for step in range(turns * STEPS):
+    for step in range(steps):
         model.begin_step(step * dt, dt, motion)
         machine.predict(step * dt, dt)
         model.loads((step + 1) * dt, motion)
         model.end_step((step + 1) * dt, motion)
         records.append(model.record())
-    last = records[-STEPS:]
-    result = {name: np.array([record[name] for record in last]) for name in last[0]}
-    azimuth = np.arange(1, STEPS + 1) * 360.0 / STEPS
-    return {**result, "azimuth_deg": azimuth, "radius": model.coordinates["radius"]}
+    return {name: np.array([record[name] for record in records]) for name in records[0]}
+
+
+@cache
+def like_the_avatar() -> tuple[Turbine, float, float, float]:
+    """The straightened DTU 10 MW, wind m/s, rpm and the pitch deg of the AVATAR's thrust."""
+    turbine, wind = straightened(turbines.load("dtu10mw")), 10.5
+    ratio, thrust = AVATAR
+    speed = ratio * wind / turbine.rotor_radius / RPM
+
+    def excess(pitch: float) -> float:
+        point = steady_rotor(turbine, wind, speed * RPM, pitch * DEG)
+        return float(point["thrust_coefficient"]) - thrust
+
+    return turbine, wind, speed, float(brentq(excess, 0.0, 10.0, xtol=1e-3))
