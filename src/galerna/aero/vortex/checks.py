@@ -29,9 +29,9 @@ def find_fault(corners: Array) -> Fault | None:
     cross, neighbours folded on each other by more than a right angle, strips that pierce
     others. A side of a panel may be a point, as at the tip of an elliptic wing.
     """
-    finite: NDArray[np.bool_] = np.isfinite(corners).all(axis=2)
-    if not finite.all():
-        return _first(~finite, "has a coordinate that is not a number")
+    missing = np.asarray(~np.isfinite(corners).all(axis=2))
+    if missing.any():
+        return _first(missing, "has a coordinate that is not a number")
     diagonals = corners[1:, 1:] - corners[:-1, :-1], corners[:-1, 1:] - corners[1:, :-1]
     area = 0.5 * np.cross(*diagonals)
     size = np.maximum(*(np.sum(d**2, axis=2) for d in diagonals))

@@ -33,8 +33,9 @@ def wing_corners(
         raise InputError("quarter_chord", f"expected (n+1,3), found {place.shape}")
     along = panel_edges("chordwise", chordwise, spacing)
     lift = np.zeros_like(along) if camber is None else mean_line(camber, along)
-    chord = np.broadcast_to(np.asarray(chord, dtype=float), len(place))
-    turn = np.broadcast_to(np.asarray(twist, dtype=float), len(place))
+    chord, turn = _per_section("chord", chord, len(place)), _per_section("twist", twist, len(place))
+    if np.any(chord < 0.0):
+        raise InputError("chord", f"found {chord.min():g} m, less than 0")
     x, z = np.outer(along - 0.25, chord), np.outer(lift, chord)
     c, s = np.cos(turn), np.sin(turn)
     corners = place + np.stack([c * x + s * z, np.zeros_like(x), c * z - s * x], axis=2)
@@ -106,3 +107,10 @@ def elliptic_wing(
         camber=camber,
         spacing=chordwise_spacing,
     )
+
+
+def _per_section(name: str, values: ArrayLike, sections: int) -> Array:
+    array = np.asarray(values, dtype=float)
+    if array.shape not in ((), (1,), (sections,)):
+        raise InputError(name, f"expected one value or {sections}, found {array.shape}")
+    return np.broadcast_to(array, sections)
