@@ -1,0 +1,34 @@
+"""Rotational symmetry: a rotor in axial flow is one blade and its turned images."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from galerna.contract import Array
+
+
+@dataclass(frozen=True, eq=False)
+class RotationalSymmetry:
+    """``order`` equal sectors about the axis through ``center`` (3,) m along ``axis`` (3,)."""
+
+    order: int
+    axis: Array
+    center: Array
+
+    @property
+    def rotations(self) -> Array:
+        """Rotations (order,3,3) from the first sector to each."""
+        unit = np.asarray(self.axis, dtype=float) / np.linalg.norm(self.axis)
+        angles = 2.0 * np.pi * np.arange(self.order) / self.order
+        return Rotation.from_rotvec(angles[:, None] * unit).as_matrix()
+
+    def images(self, points: Array) -> list[Array]:
+        """Points (...,3) m of the first sector as they stand in each."""
+        return [self.center + (points - self.center) @ turn.T for turn in self.rotations]
+
+    def turn_vectors(self, vectors: Array, sector: int) -> Array:
+        """Vectors (...,3) of the first sector as they stand in another."""
+        return vectors @ self.rotations[sector].T
