@@ -22,7 +22,7 @@ from .blocks import FAST, apply, multiply3, multiply3_transposed
 from .frames import exp_se3, inverse_tangents
 from .initial import check_positions
 from .pairs import carried_on
-from .system import Balance, Forces, LoadFunction, State, System
+from .system import Forces, LoadFunction, State, System
 
 
 @dataclass(frozen=True)
@@ -144,6 +144,93 @@ def _settle(increment: Array, x0: Array, R0: Array, x: Array, R: Array) -> None:
         R[i] = multiply3(turned, correction)
 
 
+class Trial:
+    """A step under way: ``state`` is where its end is thought to be.
+
+    ``correct`` takes one step of Newton's method under the loads at ``state`` and says
+    whether the step has converged; ``settled`` is the end of a converged step.
+    """
+
+    def __init__(self, integrator: Integrator, start: State, dt: float) -> None:
+        self._start, self._system, self._tolerance = start, integrator.system, integrator.tolerance
+        s, n = integrator.scheme, len(integrator.system)
+        per_acceleration = (1.0 - s.alpha_m) / (s.beta * dt**2 * (1.0 - s.alpha_f))
+        self._factors = np.array(
+            [s.gamma / (s.beta * dt), per_acceleration, 1.0 / (s.beta * dt**2)]
+        )
+        self._scale = per_acceleration * self._system.mass_scale + self._system.stiffness_scale
+        self._tangents = np.zeros((3, n, 6, 6))  # inverse, of velocity, of acceleration
+        self._before: float = np.inf
+        self._carried: Array | None = None
+        self._residual = np.zeros((n, 6))
+        self._predict(s, dt)
+        self._place()
+
+    def correct(self, forces: Forces) -> bool:
+        """Correct the trial under ``forces``; raises ConvergenceError where it diverges."""
+        inverse, velocity_tangent, acceleration_tangent = self._tangents
+        balance = self._system.balance(
+            self.state, forces, velocity_tangent, acceleration_tangent, carried=self._carried
+        )
+        self._residual = balance.residual
+        if not np.isfinite(balance.residual).all():
+            raise self.failure()
+        variation, multiplier, constraint = self._system.solve(balance, self._scale)
+        self._carried = carried_on(self._system.pairs, balance.pairs, variation, multiplier)
+        state, tolerance = self.state, self._tolerance
+        state.multiplier += multiplier
+        state.constraint_multiplier += constraint
+        error = _correct(
+            variation, inverse, self._factors, tolerance.absolute, tolerance.relative,
+            self._increment, state.velocity, state.acceleration, state.auxiliary,
+        )  # fmt: skip
+        if not np.isfinite(error):
+            raise self.failure()
+        contraction = min(error / self._before, 0.9) if np.isfinite(self._before) else 1.0
+        self._before = error
+        if error * contraction <= 1.0:
+            return True
+        self._place()
+        return False
+
+    def settled(self) -> State:
+        """The end of the step, rounding taken out of its rotations."""
+        start, state = self._start, self.state
+        _settle(self._increment, start.position, start.rotation, state.position, state.rotation)
+        return state
+
+    def failure(self, iterations: int = 0) -> ConvergenceError:
+        """Why the step fails: the frame with the largest residual."""
+        worst = int(np.nan_to_num(np.abs(self._residual), nan=np.inf).max(axis=1).argmax())
+        often = f" in {iterations} iterations" if iterations else ""
+        return ConvergenceError(
+            self._system.names[worst],
+            f"the step does not converge{often}; the largest residual "
+            f"is {np.abs(self._residual[worst]).max():.3g} (N, N m)",
+            "try a smaller step or a smaller rho_inf",
+            self.state.time,
+        )
+
+    def _predict(self, s: Scheme, dt: float) -> None:
+        """The end of the step with unchanged accelerations, and its increments."""
+        start, state = self._start, self._start.copy()
+        state.time = start.time + dt
+        old = start.auxiliary
+        new = (start.acceleration - s.alpha_m * old) / (1.0 - s.alpha_m)
+        state.auxiliary = new
+        state.velocity = start.velocity + dt * ((1.0 - s.gamma) * old + s.gamma * new)
+        self._increment = dt * start.velocity + dt**2 * ((0.5 - s.beta) * old + s.beta * new)
+        self.state = state
+
+    def _place(self) -> None:
+        """Put the frames of the trial where its increments say."""
+        start, state = self._start, self.state
+        _place(
+            self._increment, start.position, start.rotation, self._factors[0], self._factors[1],
+            state.position, state.rotation, *self._tangents,
+        )  # fmt: skip
+
+
 @dataclass(eq=False)
 class Integrator:
     """Steps a system through time with one scheme.
@@ -177,63 +264,17 @@ class Integrator:
                 failure = error
         raise failure
 
+    def begin(self, state: State, dt: float) -> Trial:
+        """A step of ``dt`` s under way from ``state``, for a coupling that iterates itself."""
+        return Trial(self, state, dt)
+
     def _one(self, state: State, dt: float, loads: LoadFunction | None) -> State:
-        trial, increment = self._predict(state, dt)
-        s, n = self.scheme, len(self.system)
-        per_acceleration = (1.0 - s.alpha_m) / (s.beta * dt**2 * (1.0 - s.alpha_f))
-        factors = np.array([s.gamma / (s.beta * dt), per_acceleration, 1.0 / (s.beta * dt**2)])
-        scale = per_acceleration * self.system.mass_scale + self.system.stiffness_scale
-        inverse, velocity_tangent, acceleration_tangent = np.zeros((3, n, 6, 6))
-        absolute, none = self.tolerance.absolute, Forces.none(n)
-        before, carried = np.inf, None
+        trial, none = self.begin(state, dt), Forces.none(len(self.system))
         for iteration in range(1, self.tolerance.iterations + 1):
             self.iterations = iteration
-            _place(
-                increment, state.position, state.rotation, factors[0], per_acceleration,
-                trial.position, trial.rotation, inverse, velocity_tangent, acceleration_tangent,
-            )  # fmt: skip
-            forces = none if loads is None else loads(trial)
-            balance = self.system.balance(
-                trial, forces, velocity_tangent, acceleration_tangent, carried=carried
-            )
-            if not np.isfinite(balance.residual).all():
-                break
-            variation, multiplier, constraint = self.system.solve(balance, scale)
-            carried = carried_on(self.system.pairs, balance.pairs, variation, multiplier)
-            trial.multiplier += multiplier
-            trial.constraint_multiplier += constraint
-            error = _correct(
-                variation, inverse, factors, absolute, self.tolerance.relative,
-                increment, trial.velocity, trial.acceleration, trial.auxiliary,
-            )  # fmt: skip
-            if not np.isfinite(error):
-                break
-            contraction = min(error / before, 0.9) if np.isfinite(before) else 1.0
-            if error * contraction <= 1.0:
-                _settle(increment, state.position, state.rotation, trial.position, trial.rotation)
-                return trial
-            before = error
-        raise self._failure(balance, trial.time)
-
-    def _predict(self, state: State, dt: float) -> tuple[State, Array]:
-        """A trial at the end of the step with unchanged accelerations, and its increments."""
-        s, trial = self.scheme, state.copy()
-        trial.time = state.time + dt
-        old = state.auxiliary
-        trial.auxiliary = (state.acceleration - s.alpha_m * old) / (1.0 - s.alpha_m)
-        trial.velocity = state.velocity + dt * ((1.0 - s.gamma) * old + s.gamma * trial.auxiliary)
-        increment = dt * state.velocity + dt**2 * ((0.5 - s.beta) * old + s.beta * trial.auxiliary)
-        return trial, increment
-
-    def _failure(self, balance: Balance, time: float) -> ConvergenceError:
-        worst = int(np.nan_to_num(np.abs(balance.residual), nan=np.inf).max(axis=1).argmax())
-        return ConvergenceError(
-            self.system.names[worst],
-            f"the step does not converge in {self.iterations} iterations; the largest residual "
-            f"is {np.abs(balance.residual[worst]).max():.3g} (N, N m)",
-            "try a smaller step or a smaller rho_inf",
-            time,
-        )
+            if trial.correct(none if loads is None else loads(trial.state)):
+                return trial.settled()
+        raise trial.failure(self.tolerance.iterations)
 
     def march(
         self, state: State, dt: float, steps: int, loads: LoadFunction | None = None
