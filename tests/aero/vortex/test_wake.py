@@ -24,8 +24,8 @@ def rotor(azimuth: float, speed: float, wind: np.ndarray, ages: np.ndarray) -> t
         edges.append(
             np.stack([0.1 * radius, -radius * np.sin(angle), radius * np.cos(angle)], axis=1)
         )
-    axis = RotorAxis(np.zeros(3), np.array([1.0, 0.0, 0.0]))
-    return helical_wake(ages, edges, axis, speed, wind), edges
+    axis = RotorAxis(np.zeros(3), np.array([1.0, 0.0, 0.0]), speed)
+    return helical_wake(ages, edges, axis, wind), edges
 
 
 @pytest.mark.parametrize("fraction", [0.3, 1.0])
@@ -129,7 +129,7 @@ def test_cores_grow_with_age_and_leave_the_trailing_edge_singular() -> None:
     assert np.all(radius[0] == 0.0)
     assert np.all(np.diff(radius[1:, 0]) > 0.0)
     assert radius[1, 0] == pytest.approx(VortexCore(0.2).radius(GROWING[1], 5.0))
-    first, rest = wake.first_panels(VortexCore(0.2))[0], wake.sheets(VortexCore(0.2), 1)[0]
+    first, rest = (wake.sheets(VortexCore(0.2), rows=r)[0] for r in (slice(1), slice(1, None)))
     assert first.circulation.shape == (1, 2)
     assert rest.circulation.shape == (len(GROWING) - 2, 2)
 

@@ -35,10 +35,11 @@ STEP_TOLERANCE = 1e-6  #: of the first panel's age, by which a step may exceed i
 
 @dataclass(frozen=True, eq=False)
 class RotorAxis:
-    """The axis that a rotor's wake winds about: a point (3,) m on it and its direction (3,)."""
+    """A rotor's axis: a point (3,) m, the unit direction (3,) and the ``speed`` rad/s about it."""
 
     origin: Array
     direction: Array
+    speed: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,29 +104,29 @@ class Wake:
         for x, edge in zip(self.vertices, edges, strict=True):
             x[0] = edge
 
-    def core_radius(self, core: VortexCore | None) -> tuple[Array | float, ...]:
+    def core_radius(self, core: VortexCore | None, edge: float = 0.0) -> tuple[Array | float, ...]:
         """Core radii (K+1,1) m of each surface's rows, from their age and strongest circulation.
 
-        Row 0 keeps the singular vortex of the bound ring that it coincides with.
+        Row 0 takes that of the bound ring's ``edge`` m with which it coincides.
         """
         if core is None:
             return tuple(0.0 for _ in self.vertices)
-        return tuple(_row_cores(core, self.ages, g) for g in self.circulation)
+        return tuple(_row_cores(core, self.ages, g, edge) for g in self.circulation)
 
-    def sheets(self, core: VortexCore | None = None, first: int = 0) -> list[Sheet]:
-        """What induces velocity: a sheet of each surface, from row ``first`` on."""
-        radii = self.core_radius(core)
+    def sheets(
+        self, core: VortexCore | None = None, *, rows: slice = slice(None), edge: float = 0.0
+    ) -> list[Sheet]:
+        """What induces velocity: a sheet of each surface, of the panels ``rows`` alone."""
+        first, last, _ = rows.indices(len(self.ages) - 1)
         return [
-            Sheet(x[first:], g[first:], r if np.ndim(r) == 0 else r[first:])  # type: ignore[index]
-            for x, g, r in zip(self.vertices, self.circulation, radii, strict=True)
-        ]
-
-    def first_panels(self, core: VortexCore | None = None) -> list[Sheet]:
-        """Sheets of the panels between rows 0 and 1, which move with the trailing edges."""
-        radii = self.core_radius(core)
-        return [
-            Sheet(x[:2], g[:1], r if np.ndim(r) == 0 else r[:2])  # type: ignore[index]
-            for x, g, r in zip(self.vertices, self.circulation, radii, strict=True)
+            Sheet(
+                x[first : last + 1],
+                g[first:last],
+                r if isinstance(r, float) else r[first : last + 1],
+            )
+            for x, g, r in zip(
+                self.vertices, self.circulation, self.core_radius(core, edge), strict=True
+            )
         ]
 
 
@@ -141,18 +142,16 @@ def straight_wake(
     return Wake(np.asarray(ages, float), vertices, circulation, centre)
 
 
-def helical_wake(
-    ages: Array, edges: Sequence[Array], axis: RotorAxis, rotor_speed: float, wind: Array
-) -> Wake:
-    """A wake without circulation that trailing edges (n+1,3) m leave in turning.
+def helical_wake(ages: Array, edges: Sequence[Array], axis: RotorAxis, wind: Array) -> Wake:
+    """A wake without circulation that trailing edges (n+1,3) m leave in turning about an axis.
 
-    The rotor turns at ``rotor_speed`` rad/s about ``axis``, and ``wind`` (3,) m/s carries the
-    wake away: a row of age a is the edge turned back by a times the speed, and blown on.
+    The ``wind`` (3,) m/s carries it away: a row of age a is the edge turned back by a times the
+    rotor's speed, and blown on.
     """
     vertices = tuple(np.empty((len(ages), len(e), 3)) for e in edges)
     for x, edge in zip(vertices, edges, strict=True):
         for k, age in enumerate(ages):
-            back = _turned(edge - axis.origin, axis.direction, -rotor_speed * age)
+            back = _turned(edge - axis.origin, axis.direction, -axis.speed * age)
             x[k] = axis.origin + back + age * wind
     circulation = tuple(np.zeros((len(ages) - 1, len(e) - 1)) for e in edges)
     return Wake(np.asarray(ages, float), vertices, circulation, axis.origin + ages[:, None] * wind)
@@ -183,10 +182,10 @@ def interpolated(moved: Array, fraction: Array) -> Array:
     return out
 
 
-def _row_cores(core: VortexCore, ages: Array, circulation: Array) -> Array:
+def _row_cores(core: VortexCore, ages: Array, circulation: Array, edge: float) -> Array:
     strongest = np.abs(circulation).max(axis=1)
     radius = core.radius(ages, np.concatenate([strongest[:1], strongest]))
-    radius[0] = 0.0
+    radius[0] = edge
     return radius[:, None]
 
 
