@@ -7,6 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from galerna.aero.bem.options import BemOptions
+from galerna.aero.vortex.options import VortexLatticeOptions
 from galerna.case import Case, CaseError, load, parse
 from galerna.case.document import parse_document
 from galerna.errors import InputError
@@ -31,6 +33,13 @@ outputs:
 BOX = """\
   turbulence: {{kind: mann, turbulence_class: B, points: {}, spacing_m: [1, 2, 3]}}
   shear"""
+
+VORTEX = "model: vortex_lattice\n  "
+PLANES = """\
+flow_output:
+    interval_s: 1
+    planes:
+      - {{name: {}, corner_m: [0, 0, 0], first_side_m: [1, 0, 0], second_side_m: [0, 1, 0]}}"""
 
 
 def refused(text):
@@ -99,6 +108,32 @@ def test_a_good_case_is_read():
         ),
         ("duration_s: 10", "duration_s: 1e308", "3: duration_s: 1e+308 s are too many time steps"),
         ("  shear", BOX.format("[64, 8]"), "7: inflow.turbulence.points[2]: this value is missing"),
+        ("model: bem", "model: vortex", "9: aerodynamics.model: expected 'bem', 'vortex_lattice'"),
+        ("model: bem", "model: vortex", "did you mean 'vortex_lattice'"),
+        ("model: bem", VORTEX + "tip_loss: true", "10: aerodynamics.tip_loss: unknown key"),
+        ("model: bem", VORTEX + "wake_stp_deg: 5", "did you mean 'wake_step_deg'"),
+        ("model: bem", VORTEX + "wake: fixed", "wake: expected 'free' or 'prescribed', found 'fix"),
+        (
+            "model: bem",
+            VORTEX + "probes_m: [[0, 1]]",
+            "10: aerodynamics.probes_m[0][2]: this value",
+        ),
+        (
+            "model: bem",
+            VORTEX + "tree_error: 0.5",
+            "tree_error: expected less than or equal to 0.1",
+        ),
+        (
+            "model: bem",
+            VORTEX + "wake_revolutions: 3\n  wake_length_diameters: 2",
+            "aerodynamics: give wake_revolutions or wake_length_diameters, not both",
+        ),
+        ("model: bem", VORTEX + PLANES.format("a/b"), "planes[0].name: expected letters, digits"),
+        (
+            "model: bem",
+            VORTEX + PLANES.format("wake"),
+            "flow_output: no plane may have the name 'wa",
+        ),
         (
             "  shear",
             BOX.format("[8, 8, 8, 8]"),
@@ -137,6 +172,17 @@ def test_all_problems_come_at_once():
         "  line 14",
     ]
     assert caught.value.exit_code == 2
+
+
+def test_a_block_that_names_no_model_is_for_blade_element_momentum():
+    case = parse(GOOD.replace("model: bem", "tip_loss: false")).case
+    assert case.aerodynamics == BemOptions(tip_loss=False)
+
+
+def test_one_line_chooses_the_vortex_lattice():
+    case = parse(GOOD.replace("model: bem", "model: vortex_lattice")).case
+    assert case.aerodynamics == VortexLatticeOptions()
+    assert load(case).case == case
 
 
 def test_a_dictionary_is_a_case_too():

@@ -339,10 +339,14 @@ def test_the_printed_schema_is_json(capsys):
 
 def test_every_option_that_is_cited_exists():
     from galerna.aero.bem.options import BemOptions
+    from galerna.aero.vortex.options import VortexLatticeOptions
     from galerna.cite import AERODYNAMICS, TURBINES
     from galerna.turbine import names
 
     assert set(TURBINES) == set(names())
-    for option, values in AERODYNAMICS.items():
-        for value in values:
-            BemOptions.model_validate({"model": "bem", option: value})
+    models = {"bem": BemOptions, "vortex_lattice": VortexLatticeOptions}
+    assert set(AERODYNAMICS) == set(models)
+    for model, options in AERODYNAMICS.items():
+        for option, values in options.items():
+            for value in values:
+                models[model].model_validate({"model": model, option: value})

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from galerna.aero.bem.options import BemOptions
+    from galerna.aero.vortex.options import VortexLatticeOptions
     from galerna.case import Case
 
 
@@ -195,6 +197,48 @@ _IEC = Reference(
     "IEC 61400-1, edition 4",
     kind="techreport",
 )
+_KATZ_PLOTKIN = Reference(
+    "KatzPlotkin2001",
+    "J. Katz, A. Plotkin",
+    2001,
+    "Low-Speed Aerodynamics, second edition",
+    "Cambridge University Press",
+    "10.1017/CBO9780511810329",
+    "book",
+)
+_SIMPSON = Reference(
+    "Simpson2013",
+    "R. J. S. Simpson, R. Palacios, J. Murua",
+    2013,
+    "Induced-drag calculations in the unsteady vortex lattice method",
+    "AIAA Journal 51(7), 1775-1779",
+    "10.2514/1.J052136",
+)
+_VATISTAS = Reference(
+    "Vatistas1991",
+    "G. H. Vatistas, V. Kozel, W. C. Mih",
+    1991,
+    "A simpler model for concentrated vortices",
+    "Experiments in Fluids 11, 73-76",
+    "10.1007/BF00198434",
+)
+_BHAGWAT = Reference(
+    "BhagwatLeishman2002",
+    "M. J. Bhagwat, J. G. Leishman",
+    2002,
+    "Generalized viscous vortex model for application to free-vortex wake and aeroacoustic "
+    "calculations",
+    "American Helicopter Society 58th Annual Forum, Montreal",
+    kind="techreport",
+)
+_MUKHERJEE = Reference(
+    "MukherjeeGopalarathnam2006",
+    "R. Mukherjee, A. Gopalarathnam",
+    2006,
+    "Poststall prediction of multiple-lifting-surface configurations using a decambering approach",
+    "Journal of Aircraft 43(3), 660-668",
+    "10.2514/1.15149",
+)
 _NREL5MW = Reference(
     "Jonkman2009",
     "J. Jonkman, S. Butterfield, W. Musial, G. Scott",
@@ -241,24 +285,31 @@ TURBINES = {
     "iea15mw": (_IEA15MW,),
 }
 
-#: per option of the aerodynamics block: what each of its values rests on
-AERODYNAMICS: dict[str, dict[object, tuple[Reference, ...]]] = {
-    "model": {"bem": (_NING,)},
-    "tip_loss": {True: (_PRANDTL,)},
-    "root_loss": {True: (_PRANDTL,)},
-    "high_thrust": {
-        "buhl": (_BUHL,),
-        "glauert": (_HANSEN,),
-        "wilson_walker": (_WILSON,),
-        "madsen": (_MADSEN,),
+#: per aerodynamic model and option of it: what each of its values rests on
+AERODYNAMICS: dict[str, dict[str, dict[object, tuple[Reference, ...]]]] = {
+    "bem": {
+        "model": {"bem": (_NING,)},
+        "tip_loss": {True: (_PRANDTL,)},
+        "root_loss": {True: (_PRANDTL,)},
+        "high_thrust": {
+            "buhl": (_BUHL,),
+            "glauert": (_HANSEN,),
+            "wilson_walker": (_WILSON,),
+            "madsen": (_MADSEN,),
+        },
+        "skewed_wake": {"pitt_peters": (_PITT_PETERS,), "vortex_cylinder": (_SKEWED_CYLINDER,)},
+        "dynamic_inflow": {"oye": (_OYE,)},
+        "unsteady_airfoil": {"beddoes_leishman": (_BEDDOES_LEISHMAN,)},
+        "indicial_response": {"jones": (_JONES,)},
+        "spanwise_filter": {"loads": (_FILTER,), "feedback": (_FILTER,)},
+        "tower_influence": {True: (_POWLES,)},
+        "rotational_augmentation": {"snel": (_SNEL,), "du_selig": (_DU_SELIG,)},
     },
-    "skewed_wake": {"pitt_peters": (_PITT_PETERS,), "vortex_cylinder": (_SKEWED_CYLINDER,)},
-    "dynamic_inflow": {"oye": (_OYE,)},
-    "unsteady_airfoil": {"beddoes_leishman": (_BEDDOES_LEISHMAN,)},
-    "indicial_response": {"jones": (_JONES,)},
-    "spanwise_filter": {"loads": (_FILTER,), "feedback": (_FILTER,)},
-    "tower_influence": {True: (_POWLES,)},
-    "rotational_augmentation": {"snel": (_SNEL,), "du_selig": (_DU_SELIG,)},
+    "vortex_lattice": {
+        "model": {"vortex_lattice": (_KATZ_PLOTKIN, _SIMPSON, _FILTER, _VATISTAS, _BHAGWAT)},
+        "decambering": {True: (_MUKHERJEE,)},
+        "tower_influence": {True: (_POWLES,)},
+    },
 }
 
 TURBULENCE = {"mann": (_MANN_TENSOR, _MANN_BOX), "kaimal": (_VEERS, _IEC)}
@@ -275,11 +326,19 @@ def _references(case: Case) -> Iterator[Reference]:
         yield from TURBULENCE.get(case.inflow.turbulence.kind, ())
     if case.inflow.gust is not None:
         yield _IEC
-    aerodynamics, unused = case.aerodynamics, set[str]()
+    unused = _unused(case.aerodynamics)
+    for option, publications in AERODYNAMICS[case.aerodynamics.model].items():
+        if option not in unused:
+            yield from publications.get(getattr(case.aerodynamics, option), ())
+
+
+def _unused(aerodynamics: BemOptions | VortexLatticeOptions) -> set[str]:
+    """Options that other options switch off."""
+    if aerodynamics.model == "vortex_lattice":
+        return set()
+    unused = set()
     if not aerodynamics.has_unsteady_airfoil:
         unused |= {"unsteady_airfoil", "indicial_response"}
     if not aerodynamics.has_dynamic_inflow:
         unused |= {"dynamic_inflow"}
-    for option, publications in AERODYNAMICS.items():
-        if option not in unused:
-            yield from publications.get(getattr(aerodynamics, option), ())
+    return unused

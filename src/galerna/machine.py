@@ -12,6 +12,7 @@ import numpy as np
 from galerna import doubts
 from galerna import turbine as turbines
 from galerna.aero.bem.model import BladeElementMomentum
+from galerna.aero.bem.options import BemOptions
 from galerna.aero.body_drag import BodyDrag
 from galerna.case import LoadedCase, Series, parse
 from galerna.contract import Array, Channel, LoadModel
@@ -116,7 +117,10 @@ def wind_of_result(dataset: xarray.Dataset) -> WindField:
 
 def _load_models(case: LoadedCase, turbine: Turbine, wind: WindField) -> dict[str, LoadModel]:
     settings, density = case.case, case.case.air_density_kg_m3
-    rotor = BladeElementMomentum(turbine, wind, air_density=density, options=settings.aerodynamics)
+    options = settings.aerodynamics
+    if not isinstance(options, BemOptions):
+        raise InputError("model", "the vortex lattice cannot be run from a case yet")
+    rotor = BladeElementMomentum(turbine, wind, air_density=density, options=options)
     if not settings.tower_and_nacelle_drag:
         return {"rotor": rotor}
     return {"rotor": rotor, "bodies": BodyDrag(turbine, wind, air_density=density)}
@@ -147,11 +151,12 @@ def _steady_point(case: LoadedCase, turbine: Turbine, wind_speed: float) -> tupl
     from galerna.aero.bem.steady import power_curve
 
     settings = case.case
+    options = settings.aerodynamics
     curve = power_curve(
         turbine,
         [wind_speed],
         air_density=settings.air_density_kg_m3,
-        options=settings.aerodynamics,
+        options=options if isinstance(options, BemOptions) else None,
     )
     return float(curve["rotor_speed"][0]), float(curve["pitch"][0])
 

@@ -19,6 +19,7 @@ from pydantic import (
 )
 
 from galerna.aero.bem.options import BemOptions
+from galerna.aero.vortex.options import VortexLatticeOptions
 from galerna.inflow.options import InflowOptions
 from galerna.units import AIR_DENSITY
 
@@ -65,6 +66,19 @@ PerBlade = Annotated[
     | Annotated[Series, Tag("series")]
     | Annotated[tuple[OverTime, ...], Field(min_length=1), Tag("blades")],
     Discriminator(_form),
+]
+
+
+def _model(value: Any) -> str:
+    """Which aerodynamic model a block is for: blade-element momentum where it does not say."""
+    if isinstance(value, dict):
+        return str(value.get("model", "bem"))
+    return str(getattr(value, "model", "bem"))
+
+
+Aerodynamics = Annotated[
+    Annotated[BemOptions, Tag("bem")] | Annotated[VortexLatticeOptions, Tag("vortex_lattice")],
+    Discriminator(_model),
 ]
 
 
@@ -126,8 +140,8 @@ class Case(Block):
     air_density_kg_m3: PositiveFloat = Field(AIR_DENSITY, description="Density of the air.")
     seed: int = Field(1, ge=0, description="Seed of everything random: same case, same bits.")
     inflow: InflowOptions = Field(description="The wind.")
-    aerodynamics: BemOptions = Field(
-        BemOptions(), description="The aerodynamic model of the rotor."
+    aerodynamics: Aerodynamics = Field(
+        BemOptions(), description="The aerodynamic model of the rotor; `model` says which."
     )
     tower_and_nacelle_drag: bool = Field(True, description="Drag of the tower and the nacelle.")
     operation: Operation = Field(description="How the machine is run.")

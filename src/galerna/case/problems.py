@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
@@ -78,8 +78,11 @@ def _problem(path: KeyPath, entry: Mapping[str, Any], model: type[BaseModel]) ->
     if kind == "union_tag_invalid":
         valid = re.findall(r"'([^']*)'", context["expected_tags"])
         key = context["discriminator"].strip("'")
-        if key.endswith("()"):  # told apart by form, not by a key
-            return Problem(path, f"expected a {' or a '.join(valid)}, found {_shown(found)}")
+        if key.endswith("()"):  # told apart by a function: of a key's value, or of the form
+            named = [name for name, value in _items(found) if str(value) == context["tag"]]
+            if not named:
+                return Problem(path, f"expected a {' or a '.join(valid)}, found {_shown(found)}")
+            key = named[0]
         what = f"expected {context['expected_tags']}, found {context['tag']!r}"
         return Problem((*path, key), what, did_you_mean(context["tag"], valid))
     if kind in LENGTHS:
@@ -93,6 +96,10 @@ def _problem(path: KeyPath, entry: Mapping[str, Any], model: type[BaseModel]) ->
         expected = PLAIN_WORDS.get(kind, expected)
         return Problem(path, f"expected {expected}, found {_shown(found)}")
     return Problem(path, message[:1].lower() + message[1:])
+
+
+def _items(value: Any) -> Iterable[tuple[str, Any]]:
+    return value.items() if isinstance(value, Mapping) else ()
 
 
 def _shown(value: Any) -> str:
