@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from galerna import turbine
 from galerna.aero.vortex.camber import (
     airfoil_line,
     has_lift,
@@ -14,8 +15,9 @@ from galerna.aero.vortex.camber import (
     parabolic_arc,
     polar_zero_lift,
     thin_airfoil_zero_lift,
+    zero_lift_angles,
 )
-from tests.machines import FLAT_PLATE
+from tests.machines import FLAT_PLATE, small_turbine
 
 ALONG = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, 201))
 
@@ -78,3 +80,13 @@ def test_coordinates_come_first_and_the_polar_stands_in() -> None:
     without = replace(airfoil, camber=None)
     assert np.array_equal(airfoil_line(without, "coordinates", ALONG), by_polar)
     assert not airfoil_line(airfoil, "none", ALONG).any()
+
+
+def test_camber_and_polar_of_nrels_thick_airfoil_differ_and_cylinders_are_left_out() -> None:
+    angles = {a.airfoil: a for a in zero_lift_angles(turbine.load("nrel5mw"))}
+    assert "Cylinder1" not in angles
+    assert np.degrees(angles["DU35_A17"].by_camber) == pytest.approx(-3.5, abs=0.05)
+    assert np.degrees(angles["DU35_A17"].by_polar) == pytest.approx(-1.4, abs=0.05)
+    plate = zero_lift_angles(small_turbine())[0]
+    assert plate.by_camber is None
+    assert plate.by_polar == pytest.approx(0.0, abs=1e-9)

@@ -30,7 +30,8 @@ class BladeLattice:
     corners in the frames of ``contract.Stations``: x to the suction side, y to the trailing
     edge, z to the tip. ``chord`` (k+n+1,) m and ``quarter_chord`` (k+n+1,3) m, in the frames,
     stand on all ``stations``. ``sections`` are the strips, bare ones first, at the middle
-    between the stations. ``notes`` say where the camber line comes from the polar.
+    between the stations, None where an airfoil has no polars. ``notes`` say where the camber
+    line comes from the polar.
     """
 
     span: Array
@@ -38,7 +39,7 @@ class BladeLattice:
     offsets: Array
     chord: Array
     quarter_chord: Array
-    sections: BladeSections
+    sections: BladeSections | None
     notes: tuple[str, ...] = ()
 
     @property
@@ -94,7 +95,9 @@ def blade_lattice(
     offsets[..., 0] = normal[lattice] + lines * chord[lattice]
     offsets[..., 1] = np.outer(along, chord[lattice]) - back[lattice]
     quarter_chord = np.stack([normal, 0.25 * chord - back, np.zeros_like(chord)], axis=1)
-    sections = blade_sections(turbine, 0.5 * (stations[1:] + stations[:-1]))
+    has_polars = all(turbine.airfoils[name].polars for name in shape.airfoil_names)
+    middles = 0.5 * (stations[1:] + stations[:-1])
+    sections = blade_sections(turbine, middles) if has_polars else None
     made = BladeLattice(span, bare, offsets, chord, quarter_chord, sections, notes)
     position, rotation = blade_frames(turbine.blade, span)
     require_sound_lattice(made.place(position, rotation), f"blade of {turbine.name!r}", span)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 
 from galerna.contract import Array
-from galerna.turbine.model import Airfoil
+from galerna.errors import InputError
+from galerna.turbine.model import Airfoil, Turbine
 
 CamberSource = Literal["coordinates", "polar", "none"]
 SEARCHED = np.radians(30.0)  #: on both sides of 0: where a polar's zero-lift angle is looked for
@@ -44,8 +45,10 @@ def thin_airfoil_zero_lift(camber: Array) -> float:
 def polar_zero_lift(airfoil: Airfoil) -> float:
     """Zero-lift angle rad of an airfoil's middle polar: where the lift rises through 0.
 
-    0 where it never does, as with a cylinder.
+    0 where it never does, as with a cylinder. Raises InputError without polars.
     """
+    if not airfoil.polars:
+        raise InputError(f"airfoil {airfoil.name!r}", "has neither polars nor coordinates")
     polar = airfoil.polars[len(airfoil.polars) // 2]
     angle, lift = polar.angle_of_attack, polar.lift
     rises = (lift[:-1] < 0.0) & (lift[1:] >= 0.0) & (np.abs(angle[:-1]) < SEARCHED)
@@ -54,8 +57,42 @@ def polar_zero_lift(airfoil: Airfoil) -> float:
     return float(zeros[np.argmin(np.abs(zeros))]) if len(zeros) else 0.0
 
 
+class ZeroLiftAngles(NamedTuple):
+    """Zero-lift angles rad of one airfoil: of its camber line in thin-airfoil theory, of its polar.
+
+    ``by_camber`` is None where no coordinates are known.
+    """
+
+    airfoil: str
+    by_camber: float | None
+    by_polar: float
+
+
+def zero_lift_angles(turbine: Turbine) -> list[ZeroLiftAngles]:
+    """What the choice between camber line and polar means, for each lifting airfoil in use.
+
+    They differ because a boundary layer that is thicker on the suction side, or an open
+    trailing edge, takes camber away from real sections.
+    """
+    names = dict.fromkeys(turbine.blade.shape.airfoil_names)
+    used = [turbine.airfoils[name] for name in names if has_lift(turbine.airfoils[name])]
+    return [
+        ZeroLiftAngles(
+            airfoil.name,
+            None if airfoil.camber is None else thin_airfoil_zero_lift(airfoil.camber),
+            polar_zero_lift(airfoil),
+        )
+        for airfoil in used
+    ]
+
+
 def has_lift(airfoil: Airfoil) -> bool:
-    """Whether an airfoil lifts at any angle; a cylinder's polar has no lift or next to none."""
+    """Whether an airfoil lifts at any angle; a cylinder's polar has no lift or next to none.
+
+    Without polars the thickness decides.
+    """
+    if not airfoil.polars:
+        return airfoil.relative_thickness < 1.0
     return any(bool(np.max(np.abs(polar.lift)) > NO_LIFT) for polar in airfoil.polars)
 
 

@@ -7,6 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from galerna.contract import Array
+from galerna.errors import InputError, did_you_mean
+
+RINGS = ("quarter_chord", "edges")
 
 
 @dataclass(eq=False)
@@ -21,6 +24,10 @@ class Lattice:
 
     corners: Array
     rings: str = "quarter_chord"
+
+    def __post_init__(self) -> None:
+        if self.rings not in RINGS:
+            raise InputError("rings", f"{self.rings!r} is unknown", did_you_mean(self.rings, RINGS))
 
     @property
     def shape(self) -> tuple[int, int]:
