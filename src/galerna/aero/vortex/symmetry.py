@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,3 +33,23 @@ class RotationalSymmetry:
     def turn_vectors(self, vectors: Array, sector: int) -> Array:
         """Vectors (...,3) of the first sector as they stand in another."""
         return vectors @ self.rotations[sector].T
+
+
+def sector_of(
+    points: Sequence[Array], axis: Array, center: Array, tolerance: float = 1e-9
+) -> RotationalSymmetry | None:
+    """The symmetry whose sectors hold these points (...,3) m each in turn; None if they do not.
+
+    The sectors may follow each other in either sense; ``tolerance`` is relative to the
+    greatest distance from the center.
+    """
+    if len({p.shape for p in points}) != 1:
+        return None
+    size = np.linalg.norm(points[0] - center, axis=-1).max()
+    for sense in (1.0, -1.0):
+        symmetry = RotationalSymmetry(len(points), sense * np.asarray(axis, float), center)
+        images = symmetry.images(points[0])
+        apart = max(np.abs(a - b).max() for a, b in zip(images, points, strict=True))
+        if apart <= tolerance * size:
+            return symmetry
+    return None
