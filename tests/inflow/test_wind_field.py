@@ -244,3 +244,42 @@ def test_hub_velocity_is_the_wind_at_the_hub():
     wind = field(random_box())
     np.testing.assert_array_equal(wind.hub_velocity(1.0), at_height(wind, HUB, time=1.0))
     assert wind.hub_wind(1.0).speed == SPEED
+
+
+@pytest.mark.parametrize("periodic", [True, False])
+def test_held_everywhere_it_is_the_same_inside_and_has_no_end(periodic):
+    wind = field(random_box(periodic=periodic, lead=20.0))
+    held, inside = wind.held_everywhere(), points_in_rotor()
+    np.testing.assert_array_equal(held.velocity(inside, 1.0), wind.velocity(inside, 1.0))
+    with pytest.raises(InputError, match="does not hold"):
+        wind.velocity(np.array([[0.0, 300.0, HUB]]), 1.0)
+    beyond = held.velocity(np.array([[0.0, 300.0, HUB], [0.0, 0.0, HUB + 300.0]]), 1.0)
+    edges = wind.velocity(np.array([[0.0, 20.0, HUB], [0.0, 0.0, HUB + 20.0]]), 1.0)
+    np.testing.assert_allclose(beyond, edges, atol=1e-6)
+
+
+def test_held_everywhere_it_has_wind_before_the_box_begins():
+    held = field(random_box(periodic=False)).held_everywhere()
+    first = held.velocity(np.array([[0.0, 0.0, HUB]]), 0.0)
+    np.testing.assert_allclose(held.velocity(np.array([[500.0, 0.0, HUB]]), 0.0), first, atol=1e-6)
+
+
+def test_held_everywhere_a_place_that_is_no_number_is_still_refused():
+    with pytest.raises(InputError, match="not a number"):
+        field(random_box()).held_everywhere().velocity(np.array([[0.0, np.nan, HUB]]), 0.0)
+
+
+def test_without_turbulence_the_mean_remains():
+    points = points_in_rotor()
+    plain = field(profile=Profile.power_law(HUB, 0.2))
+    stirred = field(random_box(), profile=Profile.power_law(HUB, 0.2)).without_turbulence()
+    np.testing.assert_array_equal(stirred.velocity(points, 2.0), plain.velocity(points, 2.0))
+
+
+def test_without_turbulence_a_box_that_holds_the_mean_gives_its_own():
+    whole = random_box(holds_mean=True)
+    mean = field(whole, profile=Profile.in_box(HUB), speed=0.0).without_turbulence()
+    at = np.array([[0.0, 5.0, HUB + 4.0]])
+    expected = whole.data.mean(axis=1)[:, 5, 6]
+    for time in (0.0, 1.7):
+        np.testing.assert_allclose(mean.velocity(at, time)[0], expected, atol=1e-6)

@@ -188,6 +188,11 @@ class Box:
         tower = None if self.tower is None else _without_mean(self.tower)
         return replace(self, data=_without_mean(self.data), tower=tower, holds_mean=False)
 
+    def mean_over_time(self) -> Box:
+        """The mean of each component at each point, as a box that does not change."""
+        tower = None if self.tower is None else _mean(self.tower)
+        return replace(self, data=_mean(self.data), tower=tower, periodic=True)
+
 
 def _check_speed(block: Block, source: str) -> None:
     """InputError if a velocity is not a number, or no wind on earth."""
@@ -197,6 +202,12 @@ def _check_speed(block: Block, source: str) -> None:
     if fastest > FASTEST_WIND:
         what = f"holds a wind of {fastest:g} m/s"
         raise InputError(source, what, "the file is damaged, or is not what it is taken for")
+
+
+def _mean(block: Block) -> Block:
+    """The mean over time, as two planes that are the same."""
+    mean = block.mean(axis=1, keepdims=True, dtype=np.float64).astype(np.float32)
+    return np.repeat(mean, 2, axis=1)
 
 
 def _without_mean(block: Block) -> Block:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -23,7 +23,8 @@ class WindField:
     The hub wind follows ``course``, the speed follows ``profile`` over the height, and
     ``box`` adds turbulence, turned with the wind's direction and upflow about the hub's
     place on the tower axis and moved at the box's own mean speed. A point outside the
-    box is an error; with ``held_below`` its lowest row holds down to the ground.
+    box is an error; with ``held_below`` its lowest row holds down to the ground, with
+    ``held_beyond`` its outermost values hold on every side and before and after it.
     Raises InputError if the box holds the mean wind and the profile would add another.
     """
 
@@ -31,6 +32,7 @@ class WindField:
     profile: Profile
     box: Box | None = None
     held_below: bool = False
+    held_beyond: bool = False
 
     def __post_init__(self) -> None:
         in_box = self.box is not None and self.box.holds_mean
@@ -62,6 +64,16 @@ class WindField:
         """Wind velocity (3,) m/s at hub height on the tower axis, turbulence included."""
         return self.velocity(np.array([[0.0, 0.0, self.profile.hub_height]]), time)[0]
 
+    def held_everywhere(self) -> WindField:
+        """The same wind without an end: beyond a box its outermost values hold."""
+        return replace(self, held_beyond=True)
+
+    def without_turbulence(self) -> WindField:
+        """The mean wind alone."""
+        if self.box is None or not self.box.holds_mean:
+            return replace(self, box=None)
+        return replace(self, box=self.box.mean_over_time())
+
     @cached_property
     def _grid(self) -> kernels.Grid:
         assert self.box is not None
@@ -76,7 +88,8 @@ class WindField:
             -0.5 * box.width,
             float(box.bottom),
             bool(box.periodic),
-            self.held_below,
+            self.held_below or self.held_beyond,
+            self.held_beyond,
         )
 
     @cached_property

@@ -18,6 +18,7 @@ from galerna.inflow.mean import HubWind, Profile, Shear
 NONE, POWER_LAW, LOGARITHMIC = int(Shear.NONE), int(Shear.POWER_LAW), int(Shear.LOGARITHMIC)
 LINEAR = int(Shear.LINEAR)
 INSIDE = -1  #: answer of ``wind_with_box`` if the box holds every point
+FARTHEST = 1e15  #: cells from a box, where it may still be held beyond its sides
 SLACK = 1e-4  #: cells that a point may stand beyond the last row: rounding of float32 headers
 
 compiled = njit(
@@ -37,6 +38,7 @@ class Grid(NamedTuple):
     bottom: float
     periodic: bool
     held_below: bool
+    held_beyond: bool
 
 
 @compiled
@@ -145,7 +147,8 @@ def fluctuation(
     if grid.periodic:
         x -= nx * math.floor(x / nx)
     in_time = x >= -SLACK and (grid.periodic or x <= nx - 1 + SLACK) and x <= nx
-    if not (in_time and y >= -SLACK and y <= ny - 1 + SLACK and z <= nz - 1 + SLACK):
+    inside = in_time and y >= -SLACK and y <= ny - 1 + SLACK and z <= nz - 1 + SLACK
+    if not (inside or (grid.held_beyond and abs(x) + abs(y) + abs(z) < FARTHEST)):
         return False, 0.0, 0.0, 0.0
     i, fx = cell(x, nx, grid.periodic)
     next_i = i + 1 if i + 1 < nx else 0
