@@ -1,0 +1,1 @@
+"""Who commands the machine: torque and pitch control, actuators, and their design."""

@@ -1,0 +1,68 @@
+"""What a controller sees of the machine and what it asks of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+
+from galerna.contract import Array
+
+
+@dataclass(slots=True)
+class Measurements:
+    """The machine as its sensors show it, in SI and radians.
+
+    ``generator_speed`` is at the generator's own shaft, ``generator_torque`` N m what acts there
+    now. ``pitch`` (b,) per blade. ``yaw_error`` is the nacelle's yaw minus the wind's direction.
+    ``root_moments`` (b,2) N m out of plane and in plane at the blades' roots;
+    ``tower_top_acceleration`` (3,) m/s2 in nacelle axes; ``platform`` (6,) m and rad.
+    """
+
+    time: float
+    rotor_speed: float
+    generator_speed: float
+    generator_torque: float
+    electrical_power: float
+    pitch: Array
+    azimuth: float
+    yaw: float = 0.0
+    yaw_error: float = 0.0
+    wind_speed: float = 0.0
+    root_moments: Array = field(default_factory=lambda: np.zeros((3, 2)))
+    tower_top_acceleration: Array = field(default_factory=lambda: np.zeros(3))
+    platform: Array = field(default_factory=lambda: np.zeros(6))
+
+
+@dataclass(slots=True)
+class Demands:
+    """What a controller asks for: pitch rad per blade, generator torque N m, yaw rate rad/s.
+
+    ``brake`` N m is a torque against the rotation of the low-speed shaft.
+    """
+
+    pitch: Array
+    generator_torque: float
+    yaw_rate: float = 0.0
+    brake: float = 0.0
+
+
+@runtime_checkable
+class Controller(Protocol):
+    """Any object with this one method can command the machine.
+
+    ``sample_time`` s between calls, where the object has it; otherwise every step. What the next
+    demand depends on is in ``state``, where the object has ``state`` and ``restore``: a run whose
+    controller does not have them cannot be resumed.
+    """
+
+    def demands(self, measured: Measurements) -> Demands: ...
+
+
+class Stateful(Protocol):
+    """A controller that can be saved and taken up again."""
+
+    def state(self) -> dict[str, np.ndarray]: ...
+    def restore(self, state: Mapping[str, np.ndarray]) -> None: ...
