@@ -81,18 +81,37 @@ def _surface_loads(
         sheet.spanwise_strength[:-1], velocity[: m * n], x[:-1, 1:] - x[:-1, :-1], density
     )
     streamwise = _joukowski(sheet.streamwise_strength, velocity[m * n :], x[1:] - x[:-1], density)
+    upstream, downstream = _shares_of_ends(lattice)
     force = np.zeros_like(x)
     force[:-1, :-1] += 0.5 * spanwise
     force[:-1, 1:] += 0.5 * spanwise
-    force[:-1] += 0.5 * streamwise
-    force[1:] += 0.5 * streamwise
-    strips = spanwise.sum(axis=0) + _shared_by_strips(streamwise.sum(axis=0))
+    force[:-1] += upstream * streamwise
+    force[1:] += downstream * streamwise
+    borne = upstream + downstream
+    strips = spanwise.sum(axis=0) + _shared_by_strips((borne * streamwise).sum(axis=0))
     if rate is not None:
         pressure = density * rate[..., None] * Lattice(x).area_vectors
-        for part in (force[:-1, :-1], force[:-1, 1:], force[1:, :-1], force[1:, 1:]):
-            part += 0.25 * pressure
-        strips += pressure.sum(axis=0)
+        for part in (force[:-1, :-1], force[:-1, 1:]):
+            part += 0.5 * upstream * pressure
+        for part in (force[1:, :-1], force[1:, 1:]):
+            part += 0.5 * downstream * pressure
+        strips += (borne * pressure).sum(axis=0)
     return SurfaceLoads(lattice.corners, _on_corners(force, lattice.rings), strips)
+
+
+def _shares_of_ends(lattice: Lattice) -> tuple[Array, Array]:
+    """Shares (m,1,1) of a chordwise segment's or a ring's load at its two ends.
+
+    A half each, but for rings that reach a quarter of a panel beyond the trailing edge, where
+    the wake bears no load. To count that quarter makes the unsteady lift early by a
+    quarter of a panel's passage, and the lift by wind along the span wrong by its length.
+    """
+    upstream, downstream = np.full((2, lattice.shape[0], 1, 1), 0.5)
+    if lattice.rings == "quarter_chord":
+        on_surface = 0.75
+        downstream[-1] = 0.5 * on_surface**2  # its middle stands at 3/8
+        upstream[-1] = on_surface - downstream[-1]
+    return upstream, downstream
 
 
 def _joukowski(strength: Array, velocity: Array, segment: Array, density: float) -> Array:
