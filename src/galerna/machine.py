@@ -14,7 +14,7 @@ from galerna import turbine as turbines
 from galerna.aero.bem.model import BladeElementMomentum
 from galerna.aero.bem.options import BemOptions
 from galerna.aero.body_drag import BodyDrag
-from galerna.case import LoadedCase, Series, parse
+from galerna.case import Case, LoadedCase, Series, parse
 from galerna.contract import Array, Channel, LoadModel
 from galerna.errors import InputError, did_you_mean
 from galerna.inflow.build import BuiltInflow, build
@@ -28,6 +28,8 @@ from galerna.units import DEG, RPM
 if TYPE_CHECKING:
     import xarray
 
+    from galerna.aero.vortex.model import VortexLattice
+    from galerna.aero.vortex.options import VortexLatticeOptions
     from galerna.inflow.field import WindField
 
 
@@ -75,10 +77,11 @@ def build_machine(case: LoadedCase) -> Machine:
     with case.blame("turbine"):
         turbine = load_turbine(case)
     wind = build_wind(case, turbine)
-    with case.blame("aerodynamics"):
-        models = _load_models(case, turbine, wind.field)
     with case.blame("operation"):
         operation = _operation(case, turbine, wind.mean_speed)
+    with case.blame("aerodynamics"):
+        models = _load_models(case, turbine, wind, operation)
+    with case.blame("operation"):
         structure = PrescribedMotion(turbine, operation, [m.stations for m in models.values()])
     with case.blame("time_step_s"):
         simulation = Simulation(
@@ -115,15 +118,42 @@ def wind_of_result(dataset: xarray.Dataset) -> WindField:
     return build_wind(lasting, load_turbine(lasting)).field
 
 
-def _load_models(case: LoadedCase, turbine: Turbine, wind: WindField) -> dict[str, LoadModel]:
+def _load_models(
+    case: LoadedCase, turbine: Turbine, wind: BuiltInflow, operation: PrescribedOperation
+) -> dict[str, LoadModel]:
     settings, density = case.case, case.case.air_density_kg_m3
-    options = settings.aerodynamics
-    if not isinstance(options, BemOptions):
-        raise InputError("model", "the vortex lattice cannot be run from a case yet")
-    rotor = BladeElementMomentum(turbine, wind, air_density=density, options=options)
+    rotor: LoadModel
+    if isinstance(settings.aerodynamics, BemOptions):
+        options = settings.aerodynamics
+        rotor = BladeElementMomentum(turbine, wind.field, air_density=density, options=options)
+    else:
+        rotor = _vortex_lattice(settings, settings.aerodynamics, turbine, wind, operation)
     if not settings.tower_and_nacelle_drag:
         return {"rotor": rotor}
-    return {"rotor": rotor, "bodies": BodyDrag(turbine, wind, air_density=density)}
+    return {"rotor": rotor, "bodies": BodyDrag(turbine, wind.field, air_density=density)}
+
+
+def _vortex_lattice(
+    case: Case,
+    options: VortexLatticeOptions,
+    turbine: Turbine,
+    wind: BuiltInflow,
+    operation: PrescribedOperation,
+) -> VortexLattice:
+    """The vortex lattice of a case; its wake goes further than a box of turbulence reaches."""
+    from galerna.aero.vortex.model import VortexLattice
+
+    everywhere = wind.field.held_everywhere()
+    return VortexLattice(
+        turbine,
+        everywhere,
+        rotor_speed=operation.rotor_speed.mean(case.duration_s),
+        wind_speed=wind.mean_speed,
+        time_step=case.time_step_s,
+        air_density=case.air_density_kg_m3,
+        options=options,
+        wake_inflow=everywhere if options.wake_turbulence else everywhere.without_turbulence(),
+    )
 
 
 def _operation(case: LoadedCase, turbine: Turbine, wind_speed: float) -> PrescribedOperation:

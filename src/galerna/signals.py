@@ -32,6 +32,11 @@ class Signal:
         table[:, 2] -= evaluate(table, 0, len(table), 0.0)[2]
         return table
 
+    def mean(self, duration: float) -> float:
+        """The mean from time 0 to ``duration`` s."""
+        knots = self.knots()
+        return evaluate(knots, 0, len(knots), duration)[2] / duration
+
 
 @njit(cache=True, error_model="numpy")
 def evaluate(knots: Array, first: int, end: int, time: float) -> tuple[float, float, float]:

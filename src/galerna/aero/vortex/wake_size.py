@@ -1,0 +1,82 @@
+"""How long the wake of a rotor is and in what steps it is shed, from a user's options."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import pi
+
+from galerna.aero.vortex.ages import SLOWEST_TURN, rotor_ages
+from galerna.aero.vortex.options import VortexLatticeOptions
+from galerna.contract import Array
+from galerna.errors import InputError
+from galerna.units import DEG
+
+SLOWEST_WIND = 0.01  #: over the tip speed; a slower one leaves a wake in the rotor plane
+
+
+@dataclass(frozen=True, eq=False)
+class WakeSize:
+    """Ages (K+1,) s of the rows of a wake, and what they are to the rotor."""
+
+    ages: Array
+    diameters: float
+    revolutions: float
+
+    @property
+    def step(self) -> float:
+        """Time s in which a row is shed."""
+        return float(self.ages[1])
+
+
+def wake_size(
+    options: VortexLatticeOptions,
+    rotor_speed: float,
+    wind_speed: float,
+    radius: float,
+    time_step: float | None = None,
+) -> WakeSize:
+    """The wake of a rotor of ``radius`` m at a mean speed rad/s, in a mean wind m/s.
+
+    Its step is rounded to whole numbers of ``time_step`` s; one that is longer is left to the
+    check of the step. Raises InputError where nothing carries the wake away.
+    """
+    _require_wind(options, rotor_speed, wind_speed, radius)
+    turn = max(abs(rotor_speed), SLOWEST_TURN * abs(wind_speed) / radius)
+    step = options.wake_step_s or options.wake_step_deg * DEG / turn
+    if time_step is not None and time_step <= step * (1.0 + 1e-9):
+        step = max(round(step / time_step), 1) * time_step
+    diameters = options.wake_length_diameters
+    if options.wake_revolutions is not None:
+        speed = max(abs(wind_speed), 0.05 * abs(rotor_speed) * radius)
+        diameters = options.wake_revolutions * 2.0 * pi / turn * speed / (2.0 * radius)
+    ages = rotor_ages(
+        rotor_speed,
+        wind_speed,
+        radius,
+        step * turn / DEG,
+        diameters=diameters,
+        near_deg=options.wake_near_deg,
+        growth=options.wake_growth,
+        widest_deg=options.wake_widest_deg,
+    )
+    ages[1:] *= step / ages[1]  # to the last bit the step itself
+    length = float(ages[-1])
+    return WakeSize(
+        ages, length * abs(wind_speed) / (2.0 * radius), length * abs(rotor_speed) / (2.0 * pi)
+    )
+
+
+def _require_wind(
+    options: VortexLatticeOptions, rotor_speed: float, wind_speed: float, radius: float
+) -> None:
+    if abs(wind_speed) > SLOWEST_WIND * abs(rotor_speed) * radius:
+        return
+    if rotor_speed and options.wake == "free" and options.start == "impulsive":
+        return
+    raise InputError(
+        "wind speed",
+        f"a wind of {wind_speed:g} m/s does not carry the wake away from the rotor",
+        "a rotor that turns in calm air needs wake: free and start: impulsive"
+        if rotor_speed
+        else "give a wind, or turn the rotor",
+    )
