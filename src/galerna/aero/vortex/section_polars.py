@@ -7,6 +7,7 @@ rises with the angle of attack.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import pi
 from typing import NamedTuple
@@ -76,6 +77,12 @@ class SectionPolars:
         table = tabulate_polar("of the wing", polar, WHOLE_TABLE)
         return cls.of_table(np.broadcast_to(table, (strips, *table.shape)))
 
+    @classmethod
+    def joined(cls, parts: Sequence[SectionPolars]) -> SectionPolars:
+        """The strips of several surfaces, one after the other, on the finest of their tables."""
+        finest = max(part.table.shape[1] for part in parts)
+        return cls.of_table(np.concatenate([_on_angles(part.table, finest) for part in parts]))
+
     def __len__(self) -> int:
         return len(self.table)
 
@@ -104,6 +111,14 @@ class SectionPolars:
         found = (1.0 - t) * self.branch[strip, left] + t * self.branch[strip, left + 1]
         outside = (np.asarray(lift > high, np.int8) - (lift < low)) * self.lifting
         return AttachedState(found[..., 0], found[..., 1], outside.astype(np.int8))
+
+
+def _on_angles(table: Array, angles: int) -> Array:
+    """A table (n,k,3) on another number of even angles."""
+    if table.shape[1] == angles:
+        return table
+    old, new = (np.linspace(-pi, pi, k) for k in (table.shape[1], angles))
+    return np.stack([[np.interp(new, old, c) for c in strip.T] for strip in table]).swapaxes(1, 2)
 
 
 def _attached_branch(table: Array) -> tuple[Array, Array]:
