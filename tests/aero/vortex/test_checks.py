@@ -67,3 +67,14 @@ def test_the_error_names_surface_and_span() -> None:
         require_sound_lattice(corners, "wing")
     with pytest.raises(InputError, match=r"\(m\+1,n\+1,3\)"):
         require_sound_lattice(corners[0], "wing")
+
+
+def test_only_a_thorough_check_looks_for_strips_that_pierce_others() -> None:
+    corners = trapezoidal_wing(6.0, 1.0, 1, 12, spanwise_spacing="uniform")
+    turn = np.linspace(0.0, 1.9 * np.pi, 13)
+    corners[..., 1], corners[..., 2] = np.cos(turn), np.sin(turn)
+    corners[:, -1, 1:] = 1.2, 0.6  # out through the first strip
+    assert find_fault(corners, thorough=False) is None
+    fault = find_fault(corners)
+    assert fault is not None
+    assert fault.what == "meets another part of the surface"

@@ -22,12 +22,13 @@ class Fault(NamedTuple):
     what: str
 
 
-def find_fault(corners: Array) -> Fault | None:
+def find_fault(corners: Array, thorough: bool = True) -> Fault | None:
     """The first fault of a surface with ``corners`` (m+1,n+1,3) m, None where it is sound.
 
     In this order: a coordinate that is no number, a panel without area, a panel whose sides
     cross, neighbours folded on each other by more than a right angle, strips that pierce
-    others. A side of a panel may be a point, as at the tip of an elliptic wing.
+    others. A side of a panel may be a point, as at the tip of an elliptic wing. The last is not
+    looked for unless ``thorough``, and takes most of the time.
     """
     missing = np.asarray(~np.isfinite(corners).all(axis=2))
     if missing.any():
@@ -46,18 +47,20 @@ def find_fault(corners: Array) -> Fault | None:
     folded[:, 1:] |= np.sum(area[:, 1:] * area[:, :-1], axis=2) < 0.0
     if folded.any():
         return _first(folded, "is folded onto its neighbour")
-    return _piercing_strip(corners[[0, -1]])
+    return _piercing_strip(corners[[0, -1]]) if thorough else None
 
 
-def require_sound_lattice(corners: Array, surface: str, span: Array | None = None) -> None:
+def require_sound_lattice(
+    corners: Array, surface: str, span: Array | None = None, thorough: bool = True
+) -> None:
     """Raise InputError that names the ``surface`` and the place of the first fault.
 
     ``corners`` (m+1,n+1,3) m; ``span`` (n+1,) are the fractions of the reference axis at which
-    the columns stand; without it the column is named.
+    the columns stand; without it the column is named. ``thorough`` as in `find_fault`.
     """
     if corners.ndim != 3 or corners.shape[2] != 3 or min(corners.shape[:2]) < 2:
         raise InputError(surface, f"corners must be (m+1,n+1,3), found {corners.shape}")
-    fault = find_fault(corners)
+    fault = find_fault(corners, thorough)
     if fault is not None:
         place = describe_place(fault, span)
         hint = "check chord, twist, offsets and the spacing of the panels there"
