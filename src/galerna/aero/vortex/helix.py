@@ -7,8 +7,7 @@ times a, the row
 
     x(a) = c + R(-a) (x(0) - c) + a U + R(-a) E(a),   dE/da = R(a) u(x(a))                (8)
 
-with U the wind and u the induced velocity. A wing is the case R = 1. E is integrated by the
-trapezium rule: u is the mean of both ends of a panel.
+with U the wind and u the induced velocity. A wing is the case R = 1.
 """
 
 from __future__ import annotations
@@ -16,7 +15,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.integrate import cumulative_trapezoid
 from scipy.spatial.transform import Rotation
 
 from galerna.aero.vortex.wake import RotorAxis
@@ -34,17 +32,6 @@ def carried(ages: Array, edge: Array, wind: Array, axis: RotorAxis | None = None
     center = np.zeros(3) if axis is None else np.asarray(axis.origin)
     back = np.einsum("kba,nb->kna", turns(ages, axis), edge - center)
     return center + back + np.asarray(ages)[:, None, None] * wind
-
-
-def drift(ages: Array, induced: Array, axis: RotorAxis | None = None) -> Array:
-    """Displacement E (K+1,n+1,3) m by the induced velocity (K+1,n+1,3) m/s on the rows."""
-    turned = np.einsum("kab,knb->kna", turns(ages, axis), induced)
-    return cumulative_trapezoid(turned, ages, axis=0, initial=0.0)
-
-
-def displaced(rows: Array, drifts: Array, ages: Array, axis: RotorAxis | None = None) -> Array:
-    """Rows of ``carried`` moved by their drift E, eq. (8)."""
-    return rows + np.einsum("kba,knb->kna", turns(ages, axis), drifts)
 
 
 def drifted_centre(ages: Array, wind: Array, drifts: Sequence[Array], axis: RotorAxis) -> Array:

@@ -1,68 +1,41 @@
-"""Steady flow about wings and rotors, with a prescribed or a free wake.
-
-The circulation of a steady wake is that of the trailing edge all along each strip, so the wake
-enters the boundary condition as n strips and not as K x n rings (eq. 4). A free wake lies where
-its own velocity carries it (eq. 8): the solution repeats flow and place until they agree.
-"""
+"""Steady flow about wings and rotors, with a prescribed or a free wake."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from galerna.aero.vortex.ages import rotor_ages
+from galerna.aero.vortex.ages import growing_ages, rotor_ages
 from galerna.aero.vortex.cores import VortexCore
 from galerna.aero.vortex.field import InducedField
-from galerna.aero.vortex.helix import carried, displaced, drift, drifted_centre
-from galerna.aero.vortex.influence import strip_influence
-from galerna.aero.vortex.loads import SurfaceLoads, lattice_loads
+from galerna.aero.vortex.free_wake import FreeWake, find_free_wake
+from galerna.aero.vortex.loads import SurfaceLoads
 from galerna.aero.vortex.mirror import MirrorPlane
 from galerna.aero.vortex.sheet import Sheet
-from galerna.aero.vortex.surface import (
-    Surface,
-    collocation_normals,
-    collocation_points,
-    collocation_velocities,
-    segment_points,
-    segment_velocities,
-    split_panels,
-)
+from galerna.aero.vortex.steady_flow import SteadyFlow, Wind, extent
+from galerna.aero.vortex.surface import Surface, collocation_points
 from galerna.aero.vortex.symmetry import RotationalSymmetry, sector_of
-from galerna.aero.vortex.system import BoundSystem
 from galerna.aero.vortex.wake import RotorAxis, Wake
 from galerna.contract import Array
-from galerna.errors import ConvergenceError, InputError
+from galerna.errors import InputError
 from galerna.units import AIR_DENSITY
 
-WING_WAKE = 100.0  #: spans that the straight wake of a wing reaches downstream
-Wind = Callable[[Array], Array]
-
-
-@dataclass(frozen=True)
-class FreeWake:
-    """How a free wake is found: each iteration moves it by ``relaxation`` times what it lacks.
-
-    It is found when no row lacks more than ``tolerance`` of the rotor's radius or the span (root
-    mean square over the row). ``error`` and ``precision`` are those of ``InducedField`` for the
-    velocity of the wake on itself.
-    """
-
-    relaxation: float = 0.3
-    tolerance: float = 1e-4
-    iterations: int = 200
-    error: float | None = 1e-3
-    precision: str = "single"
+STRAIGHT_WAKE = 100.0  #: spans that the prescribed wake of a wing reaches downstream
+FREE_WAKE = 10.0  #: spans that a free one reaches
+FREE_CORE = 0.1  #: mean chords: radius of the cores of a free wake where none is given
+TREE_ERROR = 1e-3  #: of velocities anywhere in the flow, where the treecode saves time
 
 
 @dataclass(eq=False)
 class SteadySolution:
     """Steady flow: all surfaces with their circulation (m,n) m2/s, wakes and loads.
 
-    ``wind`` (3,) m/s is the undisturbed flow that carries the wake; ``iterations`` and
-    ``history`` (what the wake lacked, of the radius) tell how a free wake was found.
+    ``wind`` (3,) m/s is the undisturbed flow that carries the wake, ``sheets`` are all that
+    induces velocity, and ``history`` holds the largest move of a row of a free wake in each
+    sweep, over the radius or span (empty for a prescribed wake).
     """
 
     surfaces: list[Surface]
@@ -74,12 +47,6 @@ class SteadySolution:
     air: Wind
     history: list[float]
     mirror: MirrorPlane | None = None
-    error: float | None = 1e-3
-
-    @property
-    def iterations(self) -> int:
-        """Iterations of the free wake; 0 for a prescribed one."""
-        return len(self.history)
 
     @property
     def force(self) -> Array:
@@ -106,7 +73,7 @@ class SteadySolution:
     def velocity(self, points: ArrayLike) -> Array:
         """Velocity (...,3) m/s of the air at points (...,3) m."""
         points = np.asarray(points, dtype=float)
-        field = InducedField(self.sheets, error=self.error, mirror=self.mirror)
+        field = InducedField(self.sheets, error=TREE_ERROR, mirror=self.mirror)
         return field.velocity(points) + self.air(points)
 
 
@@ -126,219 +93,87 @@ def solve_steady(
     """Steady flow about surfaces, each a `Surface` or its corners (m+1,n+1,3) m.
 
     ``velocity`` is the wind (3,) m/s, or a function of points (k,3) m. Corners turn with the
-    ``axis`` of a rotor and stand still without one. The wake's rows have ``ages`` (K+1,) s: by
-    default one long panel behind a wing, and `rotor_ages` behind a rotor. It goes with
-    ``wake_velocity`` (3,) m/s, by default the mean wind at the surfaces, and ``free`` lets it go
-    with all induced velocities too. A rotor in axial flow is solved for one blade unless
-    ``symmetry`` is off.
+    ``axis`` of a rotor and stand still without one. The wake goes with ``wake_velocity`` (3,)
+    m/s, by default the mean wind at the surfaces, and with the induced velocities too where
+    ``free`` says how. Its rows have ``ages`` (K+1,) s: by default one long panel behind a wing,
+    growing ones if it is free, and `rotor_ages` behind a rotor. A rotor in axial flow is solved
+    for one blade, unless ``symmetry`` is off.
+
+    In a wind across its axis a rotor's flow is not steady: the solution is that of the blades
+    as they stand, with a wake that has always had their present circulation.
 
     Raises InputError for surfaces, winds or ages that cannot be used, and ConvergenceError where
     a free wake is not found.
     """
     bodies = [s if isinstance(s, Surface) else _placed(s, axis) for s in surfaces]
+    if not bodies:
+        raise InputError("surfaces", "there are none", "give at least one")
     air = _wind(velocity)
     wind = _wake_wind(air, bodies, wake_velocity)
-    sector = _sector(bodies, velocity, wind, axis) if symmetry and mirror is None else None
-    times = _ages(bodies, wind, axis, free) if ages is None else np.asarray(ages, dtype=float)
-    flow = _Flow(bodies, air, wind, axis, times, core, sector, mirror)
-    flow.solve()
-    history = [] if free is None else flow.relax(free)
-    return flow.solution(density, history)
-
-
-class _Flow:
-    """The surfaces that are solved for, one sector of a symmetric rotor, and their wakes."""
-
-    def __init__(
-        self,
-        surfaces: list[Surface],
-        air: Wind,
-        wind: Array,
-        axis: RotorAxis | None,
-        ages: Array,
-        core: VortexCore | None,
-        sector: RotationalSymmetry | None,
-        mirror: MirrorPlane | None,
-    ) -> None:
-        self.all_surfaces = surfaces
-        self.surfaces = surfaces if sector is None else surfaces[:1]
-        self.air, self.wind, self.axis, self.ages = air, wind, axis, ages
-        self.core, self.sector, self.mirror = core, sector, mirror
-        self.points = collocation_points(self.surfaces)
-        self.normals = collocation_normals(self.surfaces)
-        relative = air(self.points) - collocation_velocities(self.surfaces)
-        self.onset = np.einsum("ka,ka->k", relative, self.normals)
-        self.rows = [carried(ages, s.lattice.vertices[-1], wind, axis) for s in self.surfaces]
-        self.drifts = [np.zeros_like(x) for x in self.rows]
-        self.system = BoundSystem(sector, mirror)
-        self.system.place(self.surfaces)
-        self.circulation: list[Array] = []
-        n = sum(s.shape[1] for s in self.surfaces)
-        self.trailing = np.zeros(n)
-
-    def solve(self) -> None:
-        """The circulation with the wake as it lies now."""
-        strips = np.einsum("kja,ka->kj", self.strips(self.points), self.normals)
-        flat = self.system.solve_with_strips(-self.onset, strips)
-        self.circulation = split_panels(flat, self.surfaces)
-
-    def strips(self, points: Array) -> Array:
-        """Velocity (k,n,3) 1/m of each wake strip, images and all, of circulation 1."""
-        radii = self.wake().core_radius(self.core)
-        parts = []
-        for rows, radius in zip(self.placed_rows(), radii, strict=True):
-            part = np.zeros((len(points), rows.shape[1] - 1, 3))
-            for vertices in self._images(rows):
-                part += strip_influence(vertices, points, radius)
-                if self.mirror is not None:
-                    image = strip_influence(vertices, self.mirror.reflect_points(points), radius)
-                    part += self.mirror.reflect_vectors(image)
-            parts.append(part)
-        return np.concatenate(parts, axis=1)
-
-    def relax(self, free: FreeWake) -> list[float]:
-        """Let the wake go where its velocity carries it; what it lacked in each iteration."""
-        size = self._size()
-        history: list[float] = []
-        while True:
-            lacking = [
-                drift(self.ages, u, self.axis) - e
-                for u, e in zip(self._wake_velocities(free), self.drifts, strict=True)
-            ]
-            history.append(float(max(_row_rms(e).max() for e in lacking) / size))
-            if history[-1] <= free.tolerance:
-                return history
-            _require_progress(history, free)
-            for own, change in zip(self.drifts, lacking, strict=True):
-                own += free.relaxation * change
-            self.solve()
-
-    def placed_rows(self) -> list[Array]:
-        """Rows (K+1,n+1,3) m of each wake, where they lie now."""
-        return [
-            displaced(x, e, self.ages, self.axis)
-            for x, e in zip(self.rows, self.drifts, strict=True)
-        ]
-
-    def wake(self) -> Wake:
-        """The wakes of the surfaces solved for."""
-        rows = self.placed_rows()
-        strengths = tuple(
-            np.tile(g[-1], (len(self.ages) - 1, 1)) for g in self.circulation
-        ) or tuple(np.zeros((len(self.ages) - 1, x.shape[1] - 1)) for x in rows)
-        centre = (
-            None
-            if self.axis is None
-            else drifted_centre(self.ages, self.wind, self.drifts, self.axis)
-        )
-        return Wake(self.ages, tuple(rows), strengths, centre)
-
-    def whole(self) -> tuple[Wake, list[Array]]:
-        """The wakes and the circulations of all surfaces."""
-        wake = self.wake()
-        if self.sector is None:
-            return wake, self.circulation
-        images = tuple(self.sector.images(wake.vertices[0]))
-        whole = replace(wake, vertices=images, circulation=wake.circulation * self.sector.order)
-        return whole, self.circulation * self.sector.order
-
-    def solution(self, density: float, history: list[float]) -> SteadySolution:
-        """Everything that is known of the flow."""
-        wake, circulation = self.whole()
-        sheets = self._sheets(wake, circulation)
-        return SteadySolution(
-            self.all_surfaces, circulation, wake, self._loads(density), self.wind, sheets,
-            self.air, history, self.mirror,
-        )  # fmt: skip
-
-    def _loads(self, density: float) -> list[SurfaceLoads]:
-        points = segment_points(self.surfaces)
-        trailing = np.concatenate([g[-1] for g in self.circulation])
-        velocity = self.air(points) + np.einsum("kja,j->ka", self.strips(points), trailing)
-        bound = [
-            Sheet(vertices, g)
-            for s, g in zip(self.surfaces, self.circulation, strict=True)
-            for vertices in self._images(s.lattice.vertices)
-        ]
-        velocity += InducedField(bound, mirror=self.mirror).velocity(points)
-        relative = velocity - segment_velocities(self.surfaces)
-        loads = lattice_loads(self.surfaces, self.circulation, relative, density)
-        if self.sector is None:
-            return loads
-        return [
-            loads[0].turned(turn, s.lattice.corners)
-            for turn, s in zip(self.sector.rotations, self.all_surfaces, strict=True)
-        ]
-
-    def _wake_velocities(self, free: FreeWake) -> list[Array]:
-        """Induced velocity (K+1,n+1,3) m/s on the rows of the surfaces solved for."""
-        sheets = self._sheets(*self.whole())
-        first = len(self.all_surfaces)
-        field = InducedField(sheets, error=free.error, precision=free.precision, mirror=self.mirror)
-        return field.vertex_velocities(range(first, first + len(self.surfaces)))
-
-    def _sheets(self, wake: Wake, circulation: list[Array]) -> list[Sheet]:
-        bound = [
-            Sheet(s.lattice.vertices, g)
-            for s, g in zip(self.all_surfaces, circulation, strict=True)
-        ]
-        return bound + wake.sheets(self.core)
-
-    def _images(self, vertices: Array) -> list[Array]:
-        return [vertices] if self.sector is None else self.sector.images(vertices)
-
-    def _size(self) -> float:
-        corners = np.concatenate([s.lattice.corners.reshape(-1, 3) for s in self.all_surfaces])
-        if self.axis is None:
-            return float(np.linalg.norm(np.ptp(corners, axis=0)))
-        return float(np.linalg.norm(np.cross(corners - self.axis.origin, self.axis.direction),
-                                    axis=1).max())  # fmt: skip
-
-
-def _row_rms(change: Array) -> Array:
-    return np.sqrt(np.sum(change**2, axis=2).mean(axis=1))
-
-
-def _require_progress(history: list[float], free: FreeWake) -> None:
-    """Raise ConvergenceError where the wake runs away or takes too long."""
-    last, best = history[-1], min(history)
-    what = ""
-    if not np.isfinite(last) or last > 100.0 * history[0]:
-        what = f"the free wake runs away: after {len(history)} iterations it lacks {last:.2g} radii"
-    elif len(history) >= free.iterations:
-        what = f"the free wake is not found in {len(history)} iterations: it lacks {last:.2g} radii"
-        what += f" (at best {best:.2g}, wanted {free.tolerance:.2g})"
-    if what:
-        hint = "use thicker vortex cores, a smaller relaxation, a shorter wake or a prescribed one"
-        raise ConvergenceError("steady vortex lattice", what, hint)
+    symmetric = symmetry and mirror is None and not callable(velocity)
+    times = _default_ages(bodies, wind, axis, free) if ages is None else _checked(ages)
+    if free is not None and core is None:
+        core = VortexCore(FREE_CORE * _mean_chord(bodies))
+    flow = SteadyFlow(
+        bodies, air, wind, times, axis=axis, core=core, mirror=mirror,
+        sector=_sector(bodies, wind, axis) if symmetric else None,
+    )  # fmt: skip
+    history = [] if free is None else find_free_wake(flow, free)
+    wake, circulation = flow.whole()
+    return SteadySolution(
+        surfaces=bodies,
+        circulation=circulation,
+        wake=wake,
+        loads=flow.loads(density),
+        wind=wind,
+        sheets=flow.sheets(),
+        air=air,
+        history=history,
+        mirror=mirror,
+    )
 
 
 def _placed(corners: ArrayLike, axis: RotorAxis | None) -> Surface:
+    corners = np.asarray(corners, dtype=float)
+    if corners.ndim != 3 or corners.shape[2] != 3 or min(corners.shape[:2]) < 2:
+        raise InputError("surfaces", f"corners must be (m+1,n+1,3), found {corners.shape}")
     if axis is None:
-        return Surface.at_rest(np.asarray(corners, dtype=float))
-    return Surface.turning(np.asarray(corners), axis.speed * axis.direction, axis.origin)
+        return Surface.at_rest(corners)
+    return Surface.turning(corners, axis.speed * axis.direction, axis.origin)
 
 
 def _wind(velocity: ArrayLike | Wind) -> Wind:
     if callable(velocity):
         return velocity
-    uniform = np.asarray(velocity, dtype=float)
-    if uniform.shape != (3,) or not np.isfinite(uniform).all():
-        raise InputError("velocity", "expected three finite numbers, m/s, or a function of points")
+    uniform = _vector("velocity", velocity)
     return lambda points: np.broadcast_to(uniform, points.shape)
 
 
 def _wake_wind(air: Wind, surfaces: list[Surface], given: ArrayLike | None) -> Array:
     if given is not None:
-        return np.asarray(given, dtype=float)
+        return _vector("wake_velocity", given)
     return air(collocation_points(surfaces)).mean(axis=0)
 
 
+def _vector(where: str, value: ArrayLike) -> Array:
+    vector = np.asarray(value, dtype=float)
+    if vector.shape != (3,) or not np.isfinite(vector).all():
+        raise InputError(where, f"expected three finite numbers, m/s, found {value!r}")
+    return vector
+
+
+def _checked(ages: ArrayLike) -> Array:
+    times = np.asarray(ages, dtype=float)
+    if times.ndim != 1 or len(times) < 2 or times[0] != 0.0 or not np.all(np.diff(times) > 0.0):
+        raise InputError("ages", "at least two times are needed that rise from 0 s")
+    return times
+
+
 def _sector(
-    surfaces: list[Surface], velocity: ArrayLike | Wind, wind: Array, axis: RotorAxis | None
+    surfaces: list[Surface], wind: Array, axis: RotorAxis | None
 ) -> RotationalSymmetry | None:
     """The symmetry of a rotor in axial flow, None where there is none."""
-    if axis is None or callable(velocity) or len(surfaces) < 2:
+    if axis is None or len(surfaces) < 2:
         return None
     across = wind - (wind @ axis.direction) * axis.direction
     if np.linalg.norm(across) > 1e-9 * np.linalg.norm(wind):
@@ -351,16 +186,21 @@ def _sector(
     return sector if np.abs(moving - turned).max() <= 1e-9 * np.abs(moving).max() else None
 
 
-def _ages(
+def _mean_chord(surfaces: list[Surface]) -> float:
+    chords = [np.linalg.norm(s.lattice.corners[-1] - s.lattice.corners[0], axis=1).mean()
+              for s in surfaces]  # fmt: skip
+    return float(np.mean(chords))
+
+
+def _default_ages(
     surfaces: list[Surface], wind: Array, axis: RotorAxis | None, free: FreeWake | None
 ) -> Array:
-    speed = float(np.linalg.norm(wind))
-    corners = np.concatenate([s.lattice.corners.reshape(-1, 3) for s in surfaces])
+    size, speed = extent(surfaces, axis), float(np.linalg.norm(wind))
     if axis is not None:
-        arms = np.linalg.norm(np.cross(corners - axis.origin, axis.direction), axis=1)
-        return rotor_ages(axis.speed, float(wind @ axis.direction), float(arms.max()))
+        return rotor_ages(axis.speed, speed, size)
     if not speed > 0.0:
         raise InputError("velocity", "there is no wind to carry a wake", "give the wake's ages")
-    if free is not None:
-        raise InputError("ages", "a free wake behind a wing needs the ages of its rows")
-    return np.array([0.0, WING_WAKE * np.linalg.norm(np.ptp(corners, axis=0)) / speed])
+    if free is None:
+        return np.array([0.0, STRAIGHT_WAKE * size / speed])
+    step = _mean_chord(surfaces) / speed
+    return growing_ages(step, FREE_WAKE * size / speed, near=free.length * size / speed, growth=1.1)
