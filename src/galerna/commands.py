@@ -35,6 +35,8 @@ NOT_IN_A_BOX = (
     "gust",
 )
 
+MOST_NOTICES = 5  #: that are printed after a run
+
 
 class InterruptedRunError(GalernaError):
     """The user pressed Ctrl-C, or something sent SIGTERM."""
@@ -98,8 +100,21 @@ def run(case: str, output: Path | None, duration: float | None, overwrite: bool)
     path = output or _default_output(case)
     check_free(path, overwrite)
     with interruptible():
-        result = running.simulate(_build(loaded), path, overwrite, [best(sys.stderr.isatty())])
+        machine = _build(loaded)
+        try:
+            result = running.simulate(machine, path, overwrite, [best(sys.stderr.isatty())])
+        finally:
+            _print_notices(machine)
     tables.print_statistics(result, path)
+
+
+def _print_notices(machine: Machine) -> None:
+    """What became known in a run, on stderr: the first few lines of it."""
+    notices = machine.notices()
+    for notice in notices[:MOST_NOTICES]:
+        print(f"warning: {notice}", file=sys.stderr)
+    if len(notices) > MOST_NOTICES:
+        print(f"warning: ... and {len(notices) - MOST_NOTICES} more", file=sys.stderr)
 
 
 def _default_output(case: str) -> Path:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
-from typing import TYPE_CHECKING
+from pathlib import Path
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -21,7 +22,7 @@ from galerna.inflow.build import BuiltInflow, build
 from galerna.inflow.sizing import RotorExtent
 from galerna.kinematics import PrescribedMotion, PrescribedOperation
 from galerna.signals import Signal
-from galerna.simulation import Simulation
+from galerna.simulation import Callback, Simulation
 from galerna.turbine.model import Turbine
 from galerna.units import DEG, RPM
 
@@ -55,6 +56,11 @@ class Machine:
         start = f"rotor speed {speed[0] / RPM:.4g} rpm, pitch {pitch[0] / DEG:.4g} deg"
         yield "operation", f"{start}{' at the start' if len(speed) + len(pitch) > 2 else ''}"
         yield "loads", ", ".join(simulation.load_models)
+        if self.vortex_lattice is not None:
+            from galerna.aero.vortex.summary import describe_lattice
+
+            motion = simulation.structure.motions[list(simulation.load_models).index("rotor")]
+            yield from describe_lattice(self.vortex_lattice, motion, case.time_step_s)
         if "bodies" in simulation.load_models and not any(self.turbine.nacelle.drag_area):
             yield "note", "the turbine has no drag areas of the nacelle: the tower alone has drag"
         for note in self.turbine.notes:
@@ -62,6 +68,27 @@ class Machine:
         steps = round(case.duration_s / case.time_step_s)
         yield "records", f"{len(self.channels)} of {len(simulation.channels)} channels"
         yield "time", f"{case.duration_s:g} s in {steps} steps of {case.time_step_s:g} s"
+
+    def flow_writers(self, result: Path, overwrite: bool) -> list[Callback]:
+        """What writes the flow beside a result, where the case asks for it."""
+        model = self.vortex_lattice
+        if model is None or model.options.flow_output is None:
+            return []
+        from galerna.flow_output import FlowWriter, flow_folder
+
+        with self.case.blame("aerodynamics", "flow_output"):
+            return [FlowWriter(model, model.options.flow_output, flow_folder(result), overwrite)]
+
+    @property
+    def vortex_lattice(self) -> VortexLattice | None:
+        """The rotor's model, if it is a vortex lattice."""
+        if isinstance(self.case.case.aerodynamics, BemOptions):
+            return None
+        return cast("VortexLattice", self.simulation.load_models["rotor"])
+
+    def notices(self) -> tuple[str, ...]:
+        """What a user should know of the run so far, a line each."""
+        return tuple(self.vortex_lattice.notices) if self.vortex_lattice is not None else ()
 
     def doubts(self) -> Iterator[str]:
         """What can be simulated but is hardly meant, a sentence each."""

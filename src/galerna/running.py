@@ -10,6 +10,7 @@ from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
 
 from galerna import __version__
+from galerna.aero.vortex.options import VortexLatticeOptions
 from galerna.case import Case, LoadedCase, load
 from galerna.cite import references
 from galerna.errors import GalernaError, InputError
@@ -41,6 +42,7 @@ def run(
     if duration is not None:
         loaded = loaded.lasting(duration)
     if output is None:
+        _require_no_flow(loaded.case)
         with TemporaryDirectory(prefix="galerna-") as folder:
             return simulate(build_machine(loaded), Path(folder) / "result.nc", callbacks=callbacks)
     check_free(Path(output), overwrite)
@@ -53,10 +55,11 @@ def simulate(
     """Run a machine that is built, into a result file."""
     settings = machine.case.case
     layout = Layout(machine.channels, machine.simulation.coordinates, _attributes(machine))
+    writers = machine.flow_writers(output, overwrite)
     result = ResultFile(output, layout, overwrite)
     recorder = Recorder(result, settings.record_every, settings.outputs.start_s)
     try:
-        machine.simulation.run(settings.duration_s, [recorder, *callbacks])
+        machine.simulation.run(settings.duration_s, [recorder, *writers, *callbacks])
     except (GalernaError, KeyboardInterrupt) as error:
         reason = str(error).splitlines()[0] if str(error) else "interrupted"
         with suppress(InputError):  # a full disk: the log holds the records
@@ -64,6 +67,14 @@ def simulate(
         error.add_note(f"the records so far are in {output}")
         raise
     return result.finish(machine.simulation.stopped or "complete")
+
+
+def _require_no_flow(case: Case) -> None:
+    """InputError for a case that writes files beside its result, where no result is kept."""
+    options = case.aerodynamics
+    if isinstance(options, VortexLatticeOptions) and options.flow_output is not None:
+        hint = "give the result a file, run(case, output), or leave flow_output out"
+        raise InputError("aerodynamics.flow_output", "there is no folder for its files", hint)
 
 
 class Recorder(Callback):
