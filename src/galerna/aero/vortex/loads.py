@@ -89,22 +89,31 @@ def _surface_loads(
     force[1:] += downstream * streamwise
     borne = upstream + downstream
     strips = spanwise.sum(axis=0) + _shared_by_strips((borne * streamwise).sum(axis=0))
+    corner_force = _on_corners(force, lattice.rings)
     if rate is not None:
-        pressure = density * rate[..., None] * Lattice(x).area_vectors
-        for part in (force[:-1, :-1], force[:-1, 1:]):
-            part += 0.5 * upstream * pressure
-        for part in (force[1:, :-1], force[1:, 1:]):
-            part += 0.5 * downstream * pressure
-        strips += (borne * pressure).sum(axis=0)
-    return SurfaceLoads(lattice.corners, _on_corners(force, lattice.rings), strips)
+        pressure = density * _panel_rate(rate, lattice.rings)[..., None] * lattice.area_vectors
+        for part in (np.s_[:-1, :-1], np.s_[:-1, 1:], np.s_[1:, :-1], np.s_[1:, 1:]):
+            corner_force[part] += 0.25 * pressure
+        strips += pressure.sum(axis=0)
+    return SurfaceLoads(lattice.corners, corner_force, strips)
+
+
+def _panel_rate(rate: Array, rings: str) -> Array:
+    """Rate (m,n) of the potential's jump at the middles of panels, from the rings' rates.
+
+    A ring that stands on the quarters of two panels has the jump between them, where they meet.
+    """
+    if rings == "edges":
+        return rate
+    return 0.5 * (rate + np.concatenate([np.zeros_like(rate[:1]), rate[:-1]]))
 
 
 def _shares_of_ends(lattice: Lattice) -> tuple[Array, Array]:
-    """Shares (m,1,1) of a chordwise segment's or a ring's load at its two ends.
+    """Shares (m,1,1) of a chordwise segment's load at its two ends.
 
     A half each, but for rings that reach a quarter of a panel beyond the trailing edge, where
-    the wake bears no load. To count that quarter makes the unsteady lift early by a
-    quarter of a panel's passage, and the lift by wind along the span wrong by its length.
+    the wake bears no load. To count that quarter makes the lift by wind along the span wrong by
+    its length.
     """
     upstream, downstream = np.full((2, lattice.shape[0], 1, 1), 0.5)
     if lattice.rings == "quarter_chord":
