@@ -93,11 +93,9 @@ class Wake:
         """Moved centres (K+1,3) that rows turn about, and those of the new rows."""
         if axis is None or self.centre is None:
             return np.zeros((len(self.ages), 3)), None
-        mean = sum(u.mean(axis=1) for u in velocity) / len(velocity)
-        moved = self.centre + elapsed * mean
-        centre = interpolated(moved, fraction)
-        centre[0] = axis.origin
-        return moved, centre
+        moved = self.centre + elapsed * sum(u.mean(axis=1) for u in velocity) / len(velocity)
+        moved[0] += axis.origin - self.centre[0]
+        return moved, interpolated(moved, fraction)
 
     def attach(self, edges: Sequence[Array]) -> None:
         """Put row 0 on the trailing edges (n+1,3) m of the surfaces."""

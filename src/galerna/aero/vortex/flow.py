@@ -1,0 +1,125 @@
+"""The flow about surfaces at one instant: wind, wake and bound vortices together."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from galerna.aero.vortex.cores import VortexCore
+from galerna.aero.vortex.field import InducedField
+from galerna.aero.vortex.loads import SurfaceLoads, lattice_loads
+from galerna.aero.vortex.mirror import MirrorPlane
+from galerna.aero.vortex.quasi_steady import strip_velocities
+from galerna.aero.vortex.sheet import Sheet
+from galerna.aero.vortex.surface import (
+    Surface,
+    collocation_normals,
+    collocation_points,
+    collocation_velocities,
+    segment_points,
+    segment_velocities,
+    split_panels,
+)
+from galerna.aero.vortex.system import BoundSystem
+from galerna.aero.vortex.wake import Wake
+from galerna.contract import Array, Inflow
+from galerna.errors import InputError
+
+
+@dataclass(frozen=True, eq=False)
+class Flow:
+    """The flow about surfaces at one instant.
+
+    ``circulation`` (m,n) m2/s of each surface; ``wind`` and ``wake_velocity`` (P,3) m/s at
+    ``control_points``: the N collocation points, then the middles of the loaded segments.
+    """
+
+    circulation: list[Array]
+    wind: Array
+    wake_velocity: Array
+
+
+def control_points(surfaces: Sequence[Surface]) -> Array:
+    """Points (P,3) m where the velocity of the air is needed: collocation and loaded segments."""
+    return np.concatenate([collocation_points(surfaces), segment_points(surfaces)])
+
+
+def wind_at(
+    inflow: Inflow, points: Array, time: float, surfaces: Sequence[Surface], names: Sequence[str]
+) -> Array:
+    """Wind (P,3) m/s at control points; InputError that says where it is not finite."""
+    wind = np.asarray(inflow.velocity(points, time), dtype=float)
+    faults = np.flatnonzero(~np.isfinite(wind).all(axis=1))
+    if len(faults):
+        place = np.array2string(points[faults[0]], precision=4)
+        raise InputError(
+            f"inflow at {_whose(int(faults[0]), surfaces, names)}",
+            f"the wind at {place} m and t = {time:.6g} s is not a number",
+        )
+    return wind
+
+
+def bound_flow(
+    system: BoundSystem, surfaces: Sequence[Surface], wind: Array, wake_velocity: Array
+) -> Flow:
+    """The flow with a wake that is known."""
+    normal = _needed_velocity(surfaces, wind + wake_velocity)
+    return Flow(split_panels(system.solve(normal), surfaces), wind, wake_velocity)
+
+
+def strip_flow(
+    system: BoundSystem,
+    surfaces: Sequence[Surface],
+    wind: Array,
+    wake: Wake,
+    core: VortexCore | None,
+    mirror: MirrorPlane | None,
+) -> Flow:
+    """The flow with a wake whose strips carry the circulation of the trailing edges."""
+    strips = strip_velocities(wake, control_points(surfaces), core, mirror)
+    normals = collocation_normals(surfaces)
+    normal_strips = np.einsum("pni,pi->pn", strips[: len(normals)], normals)
+    circulation = system.solve_with_strips(_needed_velocity(surfaces, wind), normal_strips)
+    wake_velocity = np.einsum("pni,n->pi", strips, circulation[system.trailing_rings])
+    return Flow(split_panels(circulation, surfaces), wind, wake_velocity)
+
+
+def flow_loads(
+    surfaces: Sequence[Surface],
+    flow: Flow,
+    density: float,
+    rate: Sequence[Array] | None,
+    mirror: MirrorPlane | None,
+) -> list[SurfaceLoads]:
+    """Loads of the surfaces, with the ``rate`` (m,n) m2/s2 of their circulations or without."""
+    bound = [Sheet(s.lattice.vertices, g) for s, g in zip(surfaces, flow.circulation, strict=True)]
+    points = segment_points(surfaces)
+    air = (flow.wind + flow.wake_velocity)[-len(points) :]
+    induced = InducedField(bound, mirror=mirror).velocity(points)
+    relative = air + induced - segment_velocities(surfaces)
+    return lattice_loads(surfaces, flow.circulation, relative, density, rate)
+
+
+def _needed_velocity(surfaces: Sequence[Surface], air: Array) -> Array:
+    """Normal velocity (N,) m/s that the bound vortices must induce against the air's (P,3)."""
+    velocity = collocation_velocities(surfaces)
+    return np.einsum("ni,ni->n", velocity - air[: len(velocity)], collocation_normals(surfaces))
+
+
+def _whose(point: int, surfaces: Sequence[Surface], names: Sequence[str]) -> str:
+    """The surface, and the column where it is known, of a control point."""
+    number = point
+    for surface, name in zip(surfaces, names, strict=True):
+        m, n = surface.shape
+        if number < m * n:
+            return f"{name}, panel column {number % n + 1} of {n}"
+        number -= m * n
+    for surface, name in zip(surfaces, names, strict=True):
+        m, n = surface.shape
+        if number < m * n + m * (n + 1):
+            column = number % n if number < m * n else (number - m * n) % (n + 1)
+            return f"{name}, panel column {min(column, n - 1) + 1} of {n}"
+        number -= m * n + m * (n + 1)
+    return names[-1]
