@@ -1,76 +1,133 @@
-"""Velocity induced by sheets of vortex rings, summed directly.
-
-A straight segment from a to b of circulation G, seen from x with r1 = x - a, r2 = x - b and
-l = b - a, induces (Katz and Plotkin, Low-Speed Aerodynamics, 2001, eq. 2.68)
-
-    G/(4 pi) (r1 x r2) (1/|r1| + 1/|r2|) / (|r1||r2| + r1.r2)  *  d^2 / sqrt(d^4 + r_c^4)
-
-with d = |r1 x r2|/|l| the distance from its line; the last factor is the core of Vatistas,
-Kozel and Mih (1991), n = 2, close to the swirl of a Lamb-Oseen vortex.
-"""
+"""Velocity induced by sheets of vortex rings, summed directly over every segment."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import pi, sqrt
 
 import numpy as np
-from numba import njit
+from numba import njit, prange
 
+from galerna.aero.vortex.segments import (
+    LANES,
+    NUMBERS,
+    WIDEST,
+    add_tile,
+    make_block,
+    set_segment,
+)
 from galerna.aero.vortex.sheet import Sheet
+from galerna.aero.vortex.simd import FASTMATH
 from galerna.contract import Array
+from galerna.errors import InputError
 
-_FASTMATH = {"reassoc", "contract", "arcp", "nsz", "afn"}
+_ROWS = 64  # of a tile: sums in single precision are no longer than this
+_REACH = 1e4  # m: what single precision can hold, see `segments`
 
 
-def direct_velocity(sheets: Sequence[Sheet], points: Array) -> Array:
-    """Velocity (...,3) m/s that sheets induce at points (...,3) m, in double precision."""
+def direct_velocity(sheets: Sequence[Sheet], points: Array, precision: str = "double") -> Array:
+    """Velocity (...,3) m/s that sheets induce at points (...,3) m, eq. (2) of `segments`.
+
+    ``precision`` "single" is good to about 1e-5 of the velocity; it is meant for vortices with
+    cores, and sheets that reach further than 10 km are summed in double precision all the same.
+    """
+    if precision not in ("single", "double"):
+        raise InputError("precision", f"{precision!r} is neither 'single' nor 'double'")
     points = np.asarray(points, dtype=float)
     flat = np.ascontiguousarray(points.reshape(-1, 3))
     velocity = np.zeros_like(flat)
-    for sheet in sheets:
-        x, core = sheet.vertices, np.broadcast_to(sheet.core_radius, sheet.vertices.shape[:2])
-        for start, end, strength, ends in (
-            (x[:, :-1], x[:, 1:], sheet.spanwise_strength, (core[:, :-1], core[:, 1:])),
-            (x[:-1], x[1:], sheet.streamwise_strength, (core[:-1], core[1:])),
-        ):
-            core_squared = 0.5 * (ends[0] ** 2 + ends[1] ** 2)
-            _add_segments(
-                flat,
-                np.ascontiguousarray(start.reshape(-1, 3)),
-                np.ascontiguousarray(end.reshape(-1, 3)),
-                strength.ravel(),
-                core_squared.ravel(),
-                velocity,
-            )
+    if len(flat) and len(sheets):
+        table, shapes = segment_table(sheets)
+        low = high = flat[0]
+        for x in (flat, table[:, :3]):
+            low, high = np.minimum(low, x.min(axis=0)), np.maximum(high, x.max(axis=0))
+        single = precision == "single" and float(np.max(high - low)) < _REACH
+        _sum(table, shapes, flat, velocity, np.zeros(1, np.float32 if single else np.float64))
     return velocity.reshape(points.shape)
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FASTMATH)
-def _add_segments(  # type: ignore[no-untyped-def]
-    points, start, end, strength, core_squared, velocity
-):
-    for i in range(points.shape[0]):
-        for k in range(start.shape[0]):
-            ax = points[i, 0] - start[k, 0]
-            ay = points[i, 1] - start[k, 1]
-            az = points[i, 2] - start[k, 2]
-            bx, by, bz = (
-                points[i, 0] - end[k, 0],
-                points[i, 1] - end[k, 1],
-                points[i, 2] - end[k, 2],
-            )
-            lx, ly, lz = ax - bx, ay - by, az - bz
-            cx, cy, cz = ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx
-            across = cx * cx + cy * cy + cz * cz
-            core = core_squared[k] * (lx * lx + ly * ly + lz * lz)
-            r1 = sqrt(ax * ax + ay * ay + az * az)
-            r2 = sqrt(bx * bx + by * by + bz * bz)
-            along = max(r1 * r2 + ax * bx + ay * by + az * bz, 1e-14 * r1 * r2)
-            if across <= 1e-24 * (r1 * r2) ** 2:
-                continue
-            swirl = across / sqrt(across * across + core * core)
-            f = strength[k] / (4.0 * pi) * (r1 + r2) / (r1 * r2 * along) * swirl
-            velocity[i, 0] += f * cx
-            velocity[i, 1] += f * cy
-            velocity[i, 2] += f * cz
+def segment_table(sheets: Sequence[Sheet]) -> tuple[Array, Array]:
+    """The vertices of all sheets with their segments (k,NUMBERS), see `segments.add_tile`.
+
+    And of each sheet the first row, and the vertices along and across it (sheets,3).
+    """
+    counts = [sheet.vertices.shape[0] * sheet.vertices.shape[1] for sheet in sheets]
+    first = np.concatenate([[0], np.cumsum(counts)])
+    table = np.empty((first[-1], NUMBERS))
+    for sheet, start in zip(sheets, first, strict=False):
+        _fill(
+            table,
+            start,
+            np.ascontiguousarray(sheet.vertices, dtype=float),
+            np.ascontiguousarray(sheet.circulation, dtype=float),
+            np.ascontiguousarray(np.broadcast_to(sheet.core_radius, sheet.vertices.shape[:2])),
+        )
+    shapes = [(start, *s.vertices.shape[:2]) for s, start in zip(sheets, first, strict=False)]
+    return table, np.array(shapes)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FASTMATH)
+def _fill(table, first, vertices, circulation, core):  # type: ignore[no-untyped-def]
+    rows, columns = circulation.shape
+    for i in range(rows + 1):
+        for j in range(columns + 1):
+            numbers, x = table[first + i * (columns + 1) + j], vertices[i, j]
+            numbers[0], numbers[1], numbers[2] = x[0], x[1], x[2]
+            numbers[3:] = 0.0
+            if j > 0:
+                strength = circulation[i, j - 1] if i < rows else 0.0
+                strength -= circulation[i - 1, j - 1] if i > 0 else 0.0
+                core_squared = 0.5 * (core[i, j] ** 2 + core[i, j - 1] ** 2)
+                set_segment(numbers[3:9], vertices[i, j - 1], x, core_squared, strength)
+            if i > 0:
+                strength = circulation[i - 1, j - 1] if j > 0 else 0.0
+                strength -= circulation[i - 1, j] if j < columns else 0.0
+                core_squared = 0.5 * (core[i, j] ** 2 + core[i - 1, j] ** 2)
+                set_segment(numbers[9:15], vertices[i - 1, j], x, core_squared, strength)
+
+
+@njit(cache=True, parallel=True, error_model="numpy", fastmath=FASTMATH)
+def _sum(table, shapes, points, velocity, like):  # type: ignore[no-untyped-def]
+    for number in prange((len(points) + LANES - 1) // LANES):
+        first = number * LANES
+        last = min(first + LANES, len(points))
+        _sum_at(table, shapes, points[first:last], velocity[first:last], like)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FASTMATH)
+def _sum_at(table, shapes, points, velocity, like):  # type: ignore[no-untyped-def]
+    """Velocity (k,3) at up to LANES points (k,3)."""
+    block = make_block(WIDEST, like)
+    origin = enter(points, block)
+    for sheet in range(len(shapes)):
+        first, rows, columns = shapes[sheet]
+        tiles = max(1, -(-(columns - 1) // (WIDEST - 1)))
+        for tile in range(tiles):
+            left, right = (columns - 1) * tile // tiles, (columns - 1) * (tile + 1) // tiles
+            for top in range(0, rows - 1, _ROWS):
+                bottom = min(top + _ROWS, rows - 1)
+                add_tile(
+                    table, first + top * columns + left, columns, bottom - top + 1,
+                    right - left + 1, (top == 0, left == 0), origin, block,
+                )  # fmt: skip
+                leave(block, velocity)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FASTMATH)
+def enter(points, block):  # type: ignore[no-untyped-def]
+    """Put up to LANES points (k,3) m into the block; returns the origin they count from."""
+    origin = np.zeros(3)
+    for i in range(3):
+        origin[i] = np.mean(points[:, i])
+        for n in range(LANES):
+            block.points[i * LANES + n] = points[min(n, len(points) - 1), i] - origin[i]
+    block.velocity[:] = 0.0
+    return origin
+
+
+@njit(cache=True, error_model="numpy", fastmath=FASTMATH)
+def leave(block, velocity):  # type: ignore[no-untyped-def]
+    """Add the block's velocity to ``velocity`` (k,3) m/s, and start again from zero."""
+    for n in range(len(velocity)):
+        for i in range(3):
+            velocity[n, i] += block.velocity[i * LANES + n]
+    block.velocity[:] = 0.0
