@@ -1,6 +1,7 @@
 """Make everything that is generated here: ``python -m docs.build [PART ...]``.
 
-Parts: conventions, case, turbines, demo, validation, benchmarks; all where none is given.
+Parts: conventions, case, turbines, vortex_sections, demo, validation, benchmarks; all where none
+is given.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
-from docs import case_reference, conventions_figure, turbine_pages
+from docs import case_reference, conventions_figure, turbine_pages, vortex_section_pages
 
 HERE = Path(__file__).parent
 ROOT = HERE.parent
@@ -51,6 +52,7 @@ PARTS: dict[str, Callable[[], Path]] = {
     "conventions": conventions_figure.draw,
     "case": case_reference.write,
     "turbines": turbine_pages.write,
+    "vortex_sections": vortex_section_pages.write,
     "demo": demo,
     "validation": validation,
     "benchmarks": benchmarks,

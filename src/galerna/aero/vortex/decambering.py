@@ -118,6 +118,11 @@ class Decambering:
             self._give_up(np.abs(lacking) / scale)
         return Decambered(corrected, wash, self.sections.effective_flow(across, chordwise))
 
+    def feedback(self, surfaces: Sequence[Surface], response: Array) -> Array:
+        """B S (n,n): the share of each strip's wanted wash that comes back to all of them."""
+        chord = np.concatenate([strip_chords(s.lattice.corners)[0] for s in surfaces])
+        return self._induction(response, chord) @ self._mixed(surfaces)
+
     def _newton(
         self,
         across_0: Array,

@@ -93,7 +93,7 @@ class BoundSystem:
         return solved.reshape(normal_velocity.shape)
 
     def solve_with_strips(self, normal_velocity: Array, strips: Array) -> Array:
-        """Circulations (N,) of a flow whose wake strips carry the trailing circulation.
+        """Circulations (N,) or (N,k) of a flow whose wake strips carry the trailing circulation.
 
         ``strips`` (N,n) 1/m is the normal velocity by each strip of circulation 1. The
         n trailing circulations are found first, from the Schur complement of the bound rings,
@@ -101,9 +101,10 @@ class BoundSystem:
         """
         trailing = self.trailing_rings
         both = self.solve(np.column_stack([normal_velocity, strips]))
-        alone, response = both[:, 0], both[:, 1:]
+        alone, response = both[:, : -len(trailing)], both[:, -len(trailing) :]
         schur = np.eye(len(trailing)) + response[trailing]
-        return alone - response @ np.linalg.solve(schur, alone[trailing])
+        circulation = alone - response @ np.linalg.solve(schur, alone[trailing])
+        return circulation.reshape(normal_velocity.shape)
 
     @property
     def trailing_rings(self) -> Array:
