@@ -63,26 +63,37 @@ def find_free_wake(flow: SteadyFlow, free: FreeWake) -> list[float]:
 
 def _sweep(flow: SteadyFlow, free: FreeWake) -> float:
     """Place all rows once, first to last; the largest move of a row beyond the row before it."""
-    ages, turn = flow.ages, turns(flow.ages, flow.axis)
+    turn = turns(flow.ages, flow.axis)
     last = _last_free_row(flow, free)
     velocity = [np.zeros_like(e) for e in flow.drifts]  # R(a) u, the slope of the drift
     _store(velocity, 0, _seen(flow, 0, turn, free))
     largest = 0.0
     for k in range(last):
-        width = ages[k + 1] - ages[k]
-        for weight in (0.0, 0.5):  # Euler's step, then that of the trapezium
-            moved = 0.0
-            for s, drift in enumerate(flow.drifts):
-                mean = velocity[s][k] + weight * (velocity[s][k + 1] - velocity[s][k])
-                move = free.relaxation * (drift[k] + width * mean - drift[k + 1])
-                flow.shift(s, k + 1, move, turn)
-                moved = max(moved, float(np.sqrt(np.sum(move**2, axis=1).mean())))
-            if weight == 0.0:
-                _store(velocity, k + 1, _seen(flow, k + 1, turn, free))
-                largest = max(largest, moved / flow.size)
+        moves = _place(flow, k, velocity, 0.0, free, turn)
+        _store(velocity, k + 1, _seen(flow, k + 1, turn, free))
+        correction = _place(flow, k, velocity, 0.5, free, turn)
+        both = [a + b for a, b in zip(moves, correction, strict=True)]
+        moved = max(float(np.sqrt(np.sum(m**2, axis=1).mean())) for m in both) / flow.size
         _require_sound_row(flow, k + 1, velocity, moved)
+        largest = max(largest, moved)
     _extend(flow, velocity, last, turn)
     return largest
+
+
+def _place(
+    flow: SteadyFlow, row: int, velocity: list[Array], weight: float, free: FreeWake, turn: Array
+) -> list[Array]:
+    """Move the next row, and all behind it, to where the velocity takes it from this one.
+
+    The velocity is this row's, with the ``weight`` of the next one's.
+    """
+    width = flow.ages[row + 1] - flow.ages[row]
+    moves = []
+    for s, (drift, u) in enumerate(zip(flow.drifts, velocity, strict=True)):
+        mean = u[row] + weight * (u[row + 1] - u[row])
+        moves.append(free.relaxation * (drift[row] + width * mean - drift[row + 1]))
+        flow.shift(s, row + 1, moves[-1], turn)
+    return moves
 
 
 def _seen(flow: SteadyFlow, row: int, turn: Array, free: FreeWake) -> list[Array]:
@@ -121,7 +132,7 @@ def _require_sound_row(flow: SteadyFlow, row: int, velocity: list[Array], moved:
     along = flow.wind / np.linalg.norm(flow.wind)
     for number, own in enumerate(velocity):
         where = f"row {row} of the wake of surface {number + 1}"
-        if not np.isfinite(own[row]).all() or moved > RUNAWAY * flow.size:
+        if not np.isfinite(own[row]).all() or moved > RUNAWAY:
             raise _no_wake(f"the free wake runs away at {where}")
         if own[row].mean(axis=0) @ along <= -np.linalg.norm(flow.wind):
             raise _no_wake(
