@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from math import pi, sqrt
-
 import numpy as np
-from numba import njit
+from numba import njit, prange
 
+from galerna.aero.vortex.biot_savart import enter
+from galerna.aero.vortex.segments import LANES, NUMBERS, add_tile, make_block, set_segment
+from galerna.aero.vortex.simd import FASTMATH
 from galerna.contract import Array
-
-_FASTMATH = {"reassoc", "contract", "arcp", "nsz", "afn"}
 
 
 def normal_influence(vertices: Array, points: Array, normals: Array) -> Array:
@@ -20,7 +19,11 @@ def normal_influence(vertices: Array, points: Array, normals: Array) -> Array:
     vertices, points, normals = (
         np.ascontiguousarray(a, float) for a in (vertices, points, normals)
     )
-    return _normal_influence(vertices, points, normals)
+    table = _unit_table(vertices, np.zeros(vertices.shape[:2]))
+    rows, columns = vertices.shape[0] - 1, vertices.shape[1] - 1
+    influence = np.zeros((len(points), rows * columns))
+    _add_rings(table, rows, columns, points, normals, influence)
+    return influence
 
 
 def strip_influence(vertices: Array, points: Array, core_radius: Array | float = 0.0) -> Array:
@@ -30,78 +33,93 @@ def strip_influence(vertices: Array, points: Array, core_radius: Array | float =
     from the trailing edge to its end, so its spanwise segments cancel but for the first and the
     last. ``core_radius`` m stands on the vertices, or anything that broadcasts to them.
     """
-    core_squared = np.broadcast_to(core_radius, vertices.shape[:2]) ** 2
-    return _strip_influence(
-        np.ascontiguousarray(vertices, float),
-        np.ascontiguousarray(core_squared),
-        np.ascontiguousarray(points, float),
-    )
+    core = np.ascontiguousarray(np.broadcast_to(core_radius, vertices.shape[:2]), float)
+    table = _unit_table(np.ascontiguousarray(vertices, float), core)
+    points = np.ascontiguousarray(points, float)
+    influence = np.zeros((len(points), vertices.shape[1] - 1, 3))
+    _add_strips(table, vertices.shape[0], vertices.shape[1], points, influence)
+    return influence
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FASTMATH)
-def _segment(a, b, point, core_squared, out):  # type: ignore[no-untyped-def]
-    """The velocity of a segment of circulation 1 from a to b; see ``biot_savart``."""
-    ax, ay, az = point[0] - a[0], point[1] - a[1], point[2] - a[2]
-    bx, by, bz = point[0] - b[0], point[1] - b[1], point[2] - b[2]
-    lx, ly, lz = b[0] - a[0], b[1] - a[1], b[2] - a[2]
-    cx, cy, cz = ly * az - lz * ay, lz * ax - lx * az, lx * ay - ly * ax
-    across = cx * cx + cy * cy + cz * cz
-    core = core_squared * (lx * lx + ly * ly + lz * lz)
-    r1 = sqrt(ax * ax + ay * ay + az * az)
-    r2 = sqrt(bx * bx + by * by + bz * bz)
-    along = max(r1 * r2 + ax * bx + ay * by + az * bz, 1e-14 * r1 * r2)
-    out[:] = 0.0
-    if across <= 1e-24 * (r1 * r2) ** 2:
-        return
-    swirl = across / sqrt(across * across + core * core)
-    f = (r1 + r2) / (4.0 * pi * r1 * r2 * along) * swirl
-    out[0], out[1], out[2] = f * cx, f * cy, f * cz
+@njit(cache=True, error_model="numpy", fastmath=FASTMATH)
+def _unit_table(vertices, core):  # type: ignore[no-untyped-def]
+    """A table for `segments.add_tile` in which every segment has circulation 1."""
+    rows, columns = core.shape
+    table = np.zeros((rows * columns, NUMBERS))
+    for i in range(rows):
+        for j in range(columns):
+            numbers = table[i * columns + j]
+            numbers[:3] = vertices[i, j]
+            if j > 0:
+                core_squared = 0.5 * (core[i, j] ** 2 + core[i, j - 1] ** 2)
+                set_segment(numbers[3:9], vertices[i, j - 1], vertices[i, j], core_squared, 1.0)
+            if i > 0:
+                core_squared = 0.5 * (core[i, j] ** 2 + core[i - 1, j] ** 2)
+                set_segment(numbers[9:15], vertices[i - 1, j], vertices[i, j], core_squared, 1.0)
+    return table
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FASTMATH)
-def _normal_influence(vertices, points, normals):  # type: ignore[no-untyped-def]
-    rows, columns = vertices.shape[0] - 1, vertices.shape[1] - 1
-    out = np.zeros((points.shape[0], rows * columns))
-    u = np.empty(3)
-    for k in range(points.shape[0]):
+@njit(cache=True, parallel=True, error_model="numpy", fastmath=FASTMATH)
+def _add_rings(table, rows, columns, points, normals, influence):  # type: ignore[no-untyped-def]
+    for number in prange((len(points) + LANES - 1) // LANES):
+        low = number * LANES
+        high = min(low + LANES, len(points))
+        block = make_block(2, table)
+        origin = enter(points[low:high], block)
         for i in range(rows + 1):
             for j in range(columns + 1):
+                k, ring = i * (columns + 1) + j, i * columns + j
                 if j < columns:
-                    _segment(vertices[i, j], vertices[i, j + 1], points[k], 0.0, u)
-                    w = u[0] * normals[k, 0] + u[1] * normals[k, 1] + u[2] * normals[k, 2]
-                    if i < rows:
-                        out[k, i * columns + j] += w
-                    if i > 0:
-                        out[k, (i - 1) * columns + j] -= w
+                    add_tile(table, k, 1, 1, 2, (True, False), origin, block)
+                    below, above = ring if i < rows else -1, ring - columns
+                    _share(block, normals[low:high], below, above, influence[low:high])
                 if i < rows:
-                    _segment(vertices[i, j], vertices[i + 1, j], points[k], 0.0, u)
-                    w = u[0] * normals[k, 0] + u[1] * normals[k, 1] + u[2] * normals[k, 2]
-                    if j < columns:
-                        out[k, i * columns + j] -= w
-                    if j > 0:
-                        out[k, i * columns + j - 1] += w
-    return out
+                    add_tile(table, k, columns + 1, 2, 1, (False, True), origin, block)
+                    left, right = ring - 1 if j > 0 else -1, ring if j < columns else -1
+                    _share(block, normals[low:high], left, right, influence[low:high])
 
 
-@njit(cache=True, error_model="numpy", fastmath=_FASTMATH)
-def _strip_influence(vertices, core_squared, points):  # type: ignore[no-untyped-def]
-    last, columns = vertices.shape[0] - 1, vertices.shape[1] - 1
-    out = np.zeros((points.shape[0], columns, 3))
-    u = np.empty(3)
-    for k in range(points.shape[0]):
-        for j in range(columns + 1):
-            for i in range(last):
-                core = 0.5 * (core_squared[i, j] + core_squared[i + 1, j])
-                _segment(vertices[i, j], vertices[i + 1, j], points[k], core, u)
-                if j < columns:
-                    out[k, j] -= u
-                if j > 0:
-                    out[k, j - 1] += u
-            if j < columns:
-                core = 0.5 * (core_squared[0, j] + core_squared[0, j + 1])
-                _segment(vertices[0, j], vertices[0, j + 1], points[k], core, u)
-                out[k, j] += u
-                core = 0.5 * (core_squared[last, j] + core_squared[last, j + 1])
-                _segment(vertices[last, j], vertices[last, j + 1], points[k], core, u)
-                out[k, j] -= u
-    return out
+@njit(cache=True, error_model="numpy", fastmath=FASTMATH)
+def _share(block, normals, plus, minus, influence):  # type: ignore[no-untyped-def]
+    """Give the velocity along the normals to the two rings of a segment (negative: none)."""
+    velocity = block.velocity
+    for n in range(len(normals)):
+        w = velocity[n] * normals[n, 0]
+        w += velocity[LANES + n] * normals[n, 1]
+        w += velocity[2 * LANES + n] * normals[n, 2]
+        if plus >= 0:
+            influence[n, plus] += w
+        if minus >= 0:
+            influence[n, minus] -= w
+    velocity[:] = 0.0
+
+
+@njit(cache=True, parallel=True, error_model="numpy", fastmath=FASTMATH)
+def _add_strips(table, rows, columns, points, influence):  # type: ignore[no-untyped-def]
+    end = (rows - 1) * columns
+    for number in prange((len(points) + LANES - 1) // LANES):
+        low = number * LANES
+        high = min(low + LANES, len(points))
+        block = make_block(2, table)
+        origin, part = enter(points[low:high], block), influence[low:high]
+        for j in range(columns):
+            add_tile(table, j, columns, rows, 1, (False, True), origin, block)
+            _add(block, part, j - 1, 1.0, j, -1.0)
+            if j < columns - 1:
+                add_tile(table, j, 1, 1, 2, (True, False), origin, block)
+                _add(block, part, j, 1.0, -1, 0.0)
+                add_tile(table, end + j, 1, 1, 2, (True, False), origin, block)
+                _add(block, part, j, -1.0, -1, 0.0)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FASTMATH)
+def _add(block, influence, one, sign, other, other_sign):  # type: ignore[no-untyped-def]
+    """Add the block's velocity, times the signs, to two strips (k,n,3) where there are such."""
+    for n in range(len(influence)):
+        for i in range(3):
+            u = block.velocity[i * LANES + n]
+            if one >= 0:
+                influence[n, one, i] += sign * u
+            if 0 <= other < influence.shape[1]:
+                influence[n, other, i] += other_sign * u
+    block.velocity[:] = 0.0
