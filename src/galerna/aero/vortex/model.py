@@ -16,11 +16,12 @@ from galerna.aero.vortex.lattice import Lattice
 from galerna.aero.vortex.mirror import MirrorPlane
 from galerna.aero.vortex.options import VortexLatticeOptions
 from galerna.aero.vortex.sheet import Sheet
+from galerna.aero.vortex.start import drifted_wake
 from galerna.aero.vortex.surface import Surface
 from galerna.aero.vortex.tower_wind import TowerWind
 from galerna.aero.vortex.unsteady import Solution, UnsteadyLattice, UnsteadyOptions
 from galerna.aero.vortex.viscous import PolarForces, PolarLoads, StripAir
-from galerna.aero.vortex.wake import RotorAxis
+from galerna.aero.vortex.wake import RotorAxis, Wake
 from galerna.aero.vortex.wake_size import wake_size
 from galerna.contract import Array, Channel, Inflow, Loads, Motion, Stations
 from galerna.errors import ConvergenceError
@@ -28,6 +29,7 @@ from galerna.turbine.geometry import blade_frames
 from galerna.turbine.model import Turbine
 from galerna.units import AIR_DENSITY
 
+SLOWEST_WINDMILL = 0.05  #: wind along the shaft over tip speed, for a start with a free wake
 GROUND = MirrorPlane(np.zeros(3), np.array([0.0, 0.0, 1.0]))
 
 
@@ -95,6 +97,8 @@ class VortexLattice:
         self._trial: _Evaluation | None = None
         self._shown: _Evaluation | None = None
         self._time = 0.0
+        self._started = False
+        self._first_wake: Wake | None = None
         self._told: set[tuple[int, int]] = set()
 
     @property
@@ -129,7 +133,11 @@ class VortexLattice:
         self._see_tower(motion, time)
         frames = self._frames(motion)
         axis = RotorAxis(frames.hub, frames.shaft[:, 0], frames.rotor_speed)
-        self._flow.begin_step(time, dt, self._surfaces(frames), axis)
+        surfaces = self._surfaces(frames)
+        if not self._started:
+            self._first_wake = self._drifted_wake(time, surfaces, axis)
+            self._started = True
+        self._flow.begin_step(time, dt, surfaces, axis, self._first_wake)
         self._trial = None
 
     def loads(self, time: float, motion: Motion) -> Loads:
@@ -191,7 +199,7 @@ class VortexLattice:
     def restore(self, state: Mapping[str, np.ndarray]) -> None:
         """Take ``state`` back."""
         self._flow.restore(state)
-        self._trial = None
+        self._trial, self._started = None, bool(state)
 
     def _frames(self, motion: Motion) -> Frames:
         blades, stations = len(self.blades), len(self.lattice.stations)
@@ -283,6 +291,21 @@ class VortexLattice:
         lift = (area * air.speed * polar.lift_coefficient)[..., None] * air.lift
         force[:, bare] += lift[:, bare]
         return force
+
+    def _drifted_wake(self, time: float, surfaces: list[Surface], axis: RotorAxis) -> Wake | None:
+        """Where the first free wake lies, None where it begins as a helix along the wind."""
+        free, settings = self.options.wake == "free", self._flow.options
+        edges = np.concatenate([s.lattice.vertices[-1] for s in surfaces])
+        wind = self._flow.wake_inflow.velocity(edges, time).mean(axis=0)
+        through = wind @ axis.direction
+        windmill = through > SLOWEST_WINDMILL * abs(axis.speed) * self.turbine.rotor_radius > 0.0
+        if not (free and self.options.start == "steady" and windmill):
+            return None
+        try:
+            return drifted_wake(surfaces, self._flow.ages, axis, wind, settings.core)
+        except ConvergenceError as error:
+            self.notices.append(f"the run begins with the wake along the wind: {error.what}")
+            return None
 
     def _see_tower(self, motion: Motion, time: float) -> None:
         if self._tower_wind is not None:
