@@ -12,6 +12,7 @@ from galerna.aero.vortex.field import InducedField
 from galerna.aero.vortex.loads import SurfaceLoads, lattice_loads
 from galerna.aero.vortex.mirror import MirrorPlane
 from galerna.aero.vortex.quasi_steady import strip_velocities
+from galerna.aero.vortex.shedding import EdgePanels
 from galerna.aero.vortex.sheet import Sheet
 from galerna.aero.vortex.surface import (
     Surface,
@@ -67,6 +68,27 @@ def bound_flow(
     """The flow with a wake that is known."""
     normal = _needed_velocity(surfaces, wind + wake_velocity)
     return Flow(split_panels(system.solve(normal), surfaces), wind, wake_velocity)
+
+
+def edge_flow(
+    system: BoundSystem,
+    surfaces: Sequence[Surface],
+    wind: Array,
+    far_velocity: Array,
+    edges: Sequence[EdgePanels],
+    mirror: MirrorPlane | None,
+) -> Flow:
+    """The flow with a wake whose first panels depend on the circulation sought."""
+    points, normals = control_points(surfaces), collocation_normals(surfaces)
+    needed = _needed_velocity(surfaces, wind + far_velocity)
+    pairs = [e.normal_velocity(points[: len(normals)], normals, mirror) for e in edges]
+    needed -= np.sum([known for known, _ in pairs], axis=0)
+    shares = np.hstack([share for _, share in pairs])
+    solved = system.solve_with_strips(needed, shares) if shares.any() else system.solve(needed)
+    circulation = split_panels(solved, surfaces)
+    near = [e.sheet(g[-1]) for e, g in zip(edges, circulation, strict=True)]
+    near_velocity = InducedField(near, mirror=mirror).velocity(points)
+    return Flow(circulation, wind, far_velocity + near_velocity)
 
 
 def strip_flow(

@@ -1,58 +1,161 @@
-"""Which circulation the trailing edges leave in the wake during a step.
+"""Which circulation the trailing edges leave in the wake, and how it stands close behind them.
 
 On a lattice with vortices at the quarter of its panels all vorticity stands a quarter of a panel
-upstream of where it belongs. The wake begins a quarter panel behind the trailing edge: where
-fluid belongs that has left the edge half a panel before. So what enters the wake at a time t is
-the trailing circulation at t - tau, tau = c_p / (2 u), with the chord c_p of the last panel and
-the speed u of the air off the edge; its mean over a step from t_n to t_n+1 is
+upstream of where it belongs. The wake begins a quarter panel behind the trailing edge, where
+fluid belongs that has left the edge half a panel before: what enters the wake at a time t is
 
-    G_n + theta (G_n+1 - G_n),    theta = 1/2 - tau / dt                                   (1)
+    G(t - tau),    tau = c_p / (2 u)                                                       (1)
 
-A step of one panel, u dt = c_p, has theta = 0, the classical rule (eq. 2.72); long steps tend
-to the mean of both ends. While G_n+1 is sought it is extrapolated from the last two.
+with G the circulation of the trailing ring, c_p the chord of the last panel and u the speed of the
+air off the edge. For steps of one panel this is the classical rule (eq. 2.72); G is linear
+between the ends of steps, so the circulation shed depends on the one sought.
+
+A wake step on a rotor is many panels long, and vorticity at the edge counts most. The first panel
+of the wake is therefore cut into rings that grow from c_p by doubling, each with the mean of
+eq. (1) over the time in which it was shed; their sum is the panel's own circulation.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
+from galerna.aero.vortex.influence import strip_influence
 from galerna.aero.vortex.lattice import Lattice
+from galerna.aero.vortex.mirror import MirrorPlane
+from galerna.aero.vortex.sheet import Sheet
 from galerna.aero.vortex.surface import Surface
 from galerna.contract import Array
 
-TAU = 0.5
-EARLIEST = -1.0  #: theta of steps so short that G_n-1 is the earliest circulation known
+MOST_RINGS = 8  #: in the first panel of a wake
 
 
-def leads(surface: Surface, edge_velocity: Array, dt: float) -> Array:
-    """theta (n,) of eq. (1), for the fluid's velocity (n+1,3) m/s at the trailing edge."""
+@dataclass(frozen=True, eq=False)
+class History:
+    """Trailing circulation over time: unknown now, ``before`` (n,) a step ``dt`` s ago.
+
+    ``past`` (n,) was ``past_step`` s before that; with 0 s there is no past but ``before``.
+    """
+
+    dt: float
+    before: Array
+    past: Array
+    past_step: float
+
+    def mean(self, start: Array, end: Array) -> tuple[Array, Array]:
+        """The mean from ``start`` to ``end`` s ago, (...,n): a known part, and the share of now."""
+        (new, now, past), (new_0, now_0, past_0) = self._integrals(end), self._integrals(start)
+        known = (now - now_0) * self.before + (past - past_0) * self.past
+        return known / (end - start), (new - new_0) / (end - start)
+
+    def _integrals(self, ago: Array) -> tuple[Array, Array, Array]:
+        """Weights of the three circulations in the integral over the last ``ago`` s."""
+        step = np.minimum(ago, self.dt)
+        new, now = step - 0.5 * step**2 / self.dt, 0.5 * step**2 / self.dt
+        rest = np.maximum(ago - self.dt, 0.0)
+        if self.past_step == 0.0:
+            return new, now + rest, np.zeros_like(rest)
+        older = np.minimum(rest, self.past_step)
+        fall = 0.5 * older**2 / self.past_step
+        return new, now + older - fall, fall + rest - older
+
+
+@dataclass(frozen=True, eq=False)
+class Shedding:
+    """What one surface sheds in a step: a ``known`` (n,) circulation plus a ``share`` of the new.
+
+    ``delay`` (n,) s is tau of eq. (1), ``rows`` (q+1,) the places between which the first panel of
+    the wake is cut into rings, from 0 to 1.
+    """
+
+    history: History
+    delay: Array
+    rows: Array
+    known: Array
+    share: Array
+
+    def total(self, trailing: Array) -> Array:
+        """Mean circulation (n,) shed, once the trailing one (n,) at the end is known."""
+        return self.known + self.share * trailing
+
+
+def shedding(
+    surface: Surface, edge_velocity: Array, history: History, panel: float, classical: bool = False
+) -> Shedding:
+    """What a surface sheds into a first panel of the age ``panel`` s.
+
+    ``edge_velocity`` (n+1,3) m/s is that of the fluid at the trailing edge. ``classical`` sheds
+    the circulation at the beginning of the step, in one ring (eq. 2.72).
+    """
     lattice = surface.lattice
+    if classical or lattice.rings == "edges":
+        nothing = np.zeros_like(history.before)
+        return Shedding(history, nothing, np.array([0.0, 1.0]), history.before, nothing)
     off = edge_velocity - Lattice(surface.velocity, lattice.rings).vertices[-1]
-    way = np.linalg.norm(0.5 * (off[1:] + off[:-1]), axis=1) * dt
+    speed = np.linalg.norm(0.5 * (off[1:] + off[:-1]), axis=1)
     last = lattice.corners[-1] - lattice.corners[-2]
     chord = np.linalg.norm(0.5 * (last[1:] + last[:-1]), axis=1)
-    if lattice.rings == "edges":
-        chord = np.zeros_like(chord)
-    return np.clip(
-        0.5 - TAU * chord / np.maximum(way, 1e-12 * (chord + way) + 1e-300), EARLIEST, 0.5
-    )
+    longest = 2.0 * (panel + history.dt)  # of a delay: where the air hardly leaves the edge
+    delay = np.minimum(0.5 * chord / np.maximum(speed, 1e-9 * chord / history.dt), longest)
+    known, share = history.mean(delay, delay + history.dt)
+    rings = np.clip(np.ceil(np.log2(0.5 * panel / delay.mean() + 1.0) - 0.05), 1, MOST_RINGS)
+    rows = (2.0 ** np.arange(rings + 1) - 1.0) / (2.0**rings - 1.0)
+    return Shedding(history, delay, rows, known, share)
 
 
-def shed_circulation(
-    leads: Sequence[Array],
-    now: Sequence[Array],
-    change: Sequence[Array],
-    next_change: Sequence[Array] | None = None,
-) -> list[Array]:
-    """Mean circulations (n,) m2/s that the trailing edges shed in a step, eq. (1).
+@dataclass(frozen=True, eq=False)
+class EdgePanels:
+    """The first panels of a wake: rings between rows of ``vertices`` (q+1,n+1,3) m.
 
-    ``now`` (m,n) are the bound circulations at its beginning, ``change`` (n,) what the trailing
-    ones changed before over as long a time, ``next_change`` in the step, where it is known.
+    Their circulations are ``known`` (q,n) m2/s plus ``share`` (q,n) times the trailing one.
     """
-    after = change if next_change is None else next_change
-    return [
-        g[-1] + np.where(theta > 0.0, theta * ahead, theta * behind)
-        for theta, g, behind, ahead in zip(leads, now, change, after, strict=True)
-    ]
+
+    vertices: Array
+    core_radius: Array | float
+    known: Array
+    share: Array
+
+    def normal_velocity(
+        self, points: Array, normals: Array, mirror: MirrorPlane | None
+    ) -> tuple[Array, Array]:
+        """Normal velocities (N,) of the known part, (N,n) 1/m of the shares of circulation 1."""
+        known, shares = np.zeros(len(points)), np.zeros((len(points), self.known.shape[1]))
+        for i in range(len(self.known)):
+            rows = slice(i, i + 2)
+            core = (
+                self.core_radius if isinstance(self.core_radius, float) else self.core_radius[rows]
+            )
+            velocity = strip_influence(self.vertices[rows], points, core)
+            if mirror is not None:
+                image = strip_influence(self.vertices[rows], mirror.reflect_points(points), core)
+                velocity += mirror.reflect_vectors(image)
+            normal = np.einsum("pni,pi->pn", velocity, normals)
+            known += normal @ self.known[i]
+            shares += normal * self.share[i]
+        return known, shares
+
+    def sheet(self, trailing: Array) -> Sheet:
+        """The rings with their circulation, once the trailing one (n,) is known."""
+        return Sheet(self.vertices, self.known + self.share * trailing, self.core_radius)
+
+
+def edge_panels(shed: Shedding, wake: Sheet, panel: float) -> EdgePanels:
+    """The first panel of a ``wake``, ``panel`` s old, cut into rings.
+
+    The circulation of the sheet's first row lacks the share that depends on the new one.
+    """
+    rows, first = shed.rows, wake.vertices[:2]
+    vertices = first[0] + rows[:, None, None] * (first[1] - first[0])
+    core: Array | float = 0.0
+    if np.ndim(wake.core_radius):
+        square = np.asarray(wake.core_radius)[:2] ** 2
+        core = np.sqrt(square[0] + rows[:, None] * (square[1] - square[0]))
+    ages = panel * rows[:, None] + shed.delay
+    known, share = np.empty((2, len(rows) - 1, len(shed.known)))
+    known[:-1], share[:-1] = shed.history.mean(ages[:-2], ages[1:-1])
+    width = np.diff(rows)
+    new = shed.history.dt / panel * shed.share
+    known[-1] = (wake.circulation[0] - width[:-1] @ known[:-1]) / width[-1]
+    share[-1] = (new - width[:-1] @ share[:-1]) / width[-1]
+    return EdgePanels(vertices, core, known, share)

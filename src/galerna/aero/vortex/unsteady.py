@@ -31,6 +31,7 @@ from galerna.aero.vortex.flow import (
     Flow,
     bound_flow,
     control_points,
+    edge_flow,
     flow_loads,
     strip_flow,
     wind_at,
@@ -39,7 +40,7 @@ from galerna.aero.vortex.lattice import Lattice
 from galerna.aero.vortex.loads import SurfaceLoads
 from galerna.aero.vortex.mirror import MirrorPlane
 from galerna.aero.vortex.quasi_steady import steady_wake
-from galerna.aero.vortex.shedding import leads, shed_circulation
+from galerna.aero.vortex.shedding import History, Shedding, edge_panels, shedding
 from galerna.aero.vortex.sheet import Sheet
 from galerna.aero.vortex.surface import Surface, collocation_velocities
 from galerna.aero.vortex.system import BoundSystem
@@ -68,7 +69,9 @@ class UnsteadyOptions:
     ``wake_precision`` is of the velocities that wakes induce on wakes. ``start`` "steady" begins
     with the wake of the steady flow, "impulsive" without vortices in it. ``quasi_steady`` gives
     the whole wake the present circulation. ``freeze_wake`` computes the velocity that the wake
-    induces on the surfaces once in a step, where the first ``solve`` of the step has them.
+    induces on the surfaces, but for its first panels, once in a step, where the first ``solve`` of
+    the step has them. ``classical_shedding`` leaves the circulation at the beginning of a step in
+    one ring, as most programs do.
     """
 
     free: bool = True
@@ -79,6 +82,7 @@ class UnsteadyOptions:
     start: str = "steady"
     quasi_steady: bool = False
     freeze_wake: bool = False
+    classical_shedding: bool = False
     mirror: MirrorPlane | None = None
     air_density: float = AIR_DENSITY
     rings: str = "quarter_chord"
@@ -132,8 +136,7 @@ class _Trial:
 
     memory: _Memory
     dt: float
-    leads: list[Array]
-    shed: list[Array]
+    shed: list[Shedding]
     wake: Wake
     far: InducedField | None
     frozen: Array | None = None
@@ -192,12 +195,10 @@ class UnsteadyLattice:
             memory = self._sheds(memory, self._wake_at(memory), time)
         if memory.convection is None:
             memory = replace(memory, convection=self._convection(memory, time, axis))
-        ahead = memory.convection.velocity  # type: ignore[union-attr]
-        lead = [leads(s, u[0], dt) for s, u in zip(surfaces, ahead, strict=True)]
-        shed = shed_circulation(lead, memory.circulation, _last_change(memory, dt))
-        total = [i + dt * g for i, g in zip(memory.shed, shed, strict=True)]
+        shed = self._shedding(memory, surfaces, dt)
+        total = [i + dt * new.known for i, new in zip(memory.shed, shed, strict=True)]
         wake = self._advanced(memory, memory.elapsed + dt, total)
-        self._trial = _Trial(memory, dt, lead, shed, wake, self._far_field(wake))
+        self._trial = _Trial(memory, dt, shed, wake, self._far_field(wake))
 
     def solve(self, time: float, surfaces: Sequence[Surface]) -> Solution:
         """The flow about ``surfaces`` where they are at ``time``, the end of the step begun.
@@ -219,14 +220,20 @@ class UnsteadyLattice:
         trial = self._begun()
         solution = trial.solution or self.solve(time, surfaces)
         before = trial.memory
-        self._correct_shed(trial, solution)
+        trailing = [g[-1] for g in solution.circulation]
+        for panel, new, edge in zip(trial.wake.circulation, trial.shed, trailing, strict=True):
+            panel[0] += trial.dt / self.largest_step * new.share * edge
+        shed = [
+            i + trial.dt * new.total(edge)
+            for i, new, edge in zip(before.shed, trial.shed, trailing, strict=True)
+        ]
         memory = replace(
             before,
             corners=[s.lattice.corners.copy() for s in surfaces],
             circulation=solution.circulation,
             speed=_speed(surfaces, solution.flow.wind),
             elapsed=before.elapsed + trial.dt,
-            shed=[i + trial.dt * g for i, g in zip(before.shed, trial.shed, strict=True)],
+            shed=shed,
             past=before.circulation,
             past_step=trial.dt,
         )
@@ -234,15 +241,6 @@ class UnsteadyLattice:
             memory = self._sheds(memory, trial.wake, time)
         self.system.accept()
         self._memory, self._trial = memory, None
-
-    def _correct_shed(self, trial: _Trial, solution: Solution) -> None:
-        """Put what was shed in place of what was expected to be."""
-        before = trial.memory.circulation
-        change = [g[-1] - b[-1] for g, b in zip(solution.circulation, before, strict=True)]
-        shed = shed_circulation(trial.leads, before, _last_change(trial.memory, trial.dt), change)
-        for panel, g, expected in zip(trial.wake.circulation, shed, trial.shed, strict=True):
-            panel[0] += trial.dt / self.largest_step * (g - expected)
-        trial.shed = shed
 
     def wake(self) -> Wake:
         """The wake as it is at the end of the last accepted step."""
@@ -334,19 +332,39 @@ class UnsteadyLattice:
         wind = wind_at(self.inflow, points, time, surfaces, self._names)
         if options.quasi_steady:
             return strip_flow(self.system, surfaces, wind, trial.wake, options.core, options.mirror)
-        return bound_flow(self.system, surfaces, wind, self._wake_velocity(trial, points))
+        sheets = trial.wake.sheets(options.core, rows=slice(1))
+        edges = [
+            edge_panels(new, sheet, self.largest_step)
+            for new, sheet in zip(trial.shed, sheets, strict=True)
+        ]
+        far = self._far_velocity(trial, points)
+        return edge_flow(self.system, surfaces, wind, far, edges, options.mirror)
 
-    def _wake_velocity(self, trial: _Trial, points: Array) -> Array:
-        """Velocity (P,3) m/s by the wake: its first panels move with the edges, the rest stays."""
+    def _far_velocity(self, trial: _Trial, points: Array) -> Array:
+        """Velocity (P,3) m/s by the wake but for its first panels, which move with the edges."""
         if trial.frozen is not None:
             return trial.frozen
         assert trial.far is not None
-        near = trial.wake.sheets(self.options.core, rows=slice(1))
         velocity = trial.far.velocity(points)
-        velocity += InducedField(near, mirror=self.options.mirror).velocity(points)
         if self.options.freeze_wake:
             trial.frozen = velocity
         return velocity
+
+    def _shedding(self, memory: _Memory, surfaces: Sequence[Surface], dt: float) -> list[Shedding]:
+        assert memory.convection is not None
+        past = memory.past or memory.circulation
+        return [
+            shedding(
+                s,
+                u[0],
+                History(dt, g[-1], b[-1], memory.past_step),
+                self.largest_step,
+                self.options.classical_shedding,
+            )
+            for s, u, g, b in zip(
+                surfaces, memory.convection.velocity, memory.circulation, past, strict=True
+            )
+        ]
 
     def _far_field(self, wake: Wake) -> InducedField | None:
         """The field of all panels but the first, summed fast for all solutions of a step."""
@@ -427,14 +445,6 @@ def _speed(surfaces: Sequence[Surface], wind: Array) -> float:
     """Highest speed m/s of the air along the surfaces, without induction."""
     velocity = collocation_velocities(surfaces)
     return float(np.linalg.norm(wind[: len(velocity)] - velocity, axis=1).max())
-
-
-def _last_change(memory: _Memory, dt: float) -> list[Array]:
-    """What the trailing circulations (n,) changed before, in proportion to a time ``dt``."""
-    if memory.past_step == 0.0:
-        return [np.zeros_like(g[-1]) for g in memory.circulation]
-    ratio = dt / memory.past_step
-    return [ratio * (g[-1] - b[-1]) for g, b in zip(memory.circulation, memory.past, strict=True)]
 
 
 def _rates(circulation: Sequence[Array], trial: _Trial) -> list[Array]:
