@@ -2,10 +2,10 @@
 
 A row lies where the one before it was carried to, so a wrong row misplaces all behind it. One
 *sweep* therefore goes from the trailing edge downstream and moves each row, with all rows behind
-it, by Heun's rule for eq. (8), to where the velocities of the rows already placed take it; then
-the circulation is solved anew. What is downstream acts upstream only weakly, and a few sweeps
-agree. (Moving all rows at once, with velocities of the last iteration, spreads a change downstream
-row by row and lets it grow on the way.)
+it, by Heun's rule for eq. (8): with the velocity of the row before, then with the mean of that
+and the velocity found there. Then the circulation is solved anew. What is downstream acts
+upstream only weakly, and a few sweeps agree. (Moving all rows at once, with velocities of the
+last iteration, spreads a change downstream row by row and lets it grow on the way.)
 
 Far downstream a steady helix of vortices is unstable and has no place of its own to be found.
 Beyond ``FreeWake.length`` rows keep the mean velocity that the last free revolution has.
