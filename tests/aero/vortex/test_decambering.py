@@ -74,9 +74,7 @@ class Steady:
         names = [f"blade{b + 1}" for b in range(len(self.surfaces))]
         model = Decambering(polars, sections, names, **options)
         response = model.response(self.solve, self.surfaces)
-        return model.solve(
-            self.surfaces, self.circulation, self.relative, response, self.solve, start
-        )
+        return model.solve(self.surfaces, self.circulation, self.relative, response, start)
 
     def _wake(self, surface: Surface) -> np.ndarray:
         edge = surface.lattice.vertices[-1]
@@ -226,7 +224,7 @@ def test_the_response_is_that_of_the_circulation() -> None:
     strip = np.searchsorted(edges, collocation_points(flow.surfaces)[:, 1]) - 1
     for j in range(6):
         upwash = np.where(strip == j, 1.0, 0.0)  # through a flat wing
-        assert response[:, j] == pytest.approx(flow.solve(-upwash)[flow.trailing], abs=1e-12)
+        assert response[:, j] == pytest.approx(flow.solve(-upwash), abs=1e-12)
 
 
 def test_what_does_not_converge_names_the_strip(monkeypatch: pytest.MonkeyPatch) -> None:

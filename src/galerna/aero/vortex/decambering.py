@@ -28,6 +28,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import NoReturn
 
 import numpy as np
 
@@ -38,8 +39,9 @@ from galerna.contract import Array
 from galerna.errors import ConvergenceError
 
 MIXING = 0.25  #: chords
-TOLERANCE = 1e-6  #: of the velocity across, over the speed
-ITERATIONS = 60
+TOLERANCE = 1e-8  #: of the velocity across, over the speed
+ITERATIONS = 100
+SHORTEST = 0.02  #: of Newton's steps
 SLOPE_STEP = np.radians(0.25)  #: on both sides, over which a polar's slope is taken
 Solve = Callable[[Array], Array]
 
@@ -77,13 +79,12 @@ class Decambering:
         self._names = [(n, j) for n, p in zip(names, polars, strict=True) for j in range(len(p))]
 
     def response(self, solve: Solve, surfaces: Sequence[Surface]) -> Array:
-        """Trailing circulations (n,n) m of a wash of 1 m/s through each strip.
+        """Circulations (N,n) m of a wash of 1 m/s through each strip.
 
-        ``solve`` finds circulations (N,k) from normal velocities (N,k), the wake included where
-        it follows at once. The response may be that of surfaces a little elsewhere.
+        ``solve`` finds circulations (N,n) from normal velocities (N,n), with the wake where it
+        follows at once.
         """
-        unit = np.eye(len(self.polars))
-        return solve(-_through_panels(unit, surfaces))[_trailing(surfaces)]
+        return solve(-_through_panels(np.eye(len(self.polars)), surfaces))
 
     def solve(
         self,
@@ -91,7 +92,6 @@ class Decambering:
         circulation: Array,
         relative_velocity: Array,
         response: Array,
-        solve: Solve,
         start: Array | None = None,
     ) -> Decambered:
         """The flow with decambering from potential flow with ``circulation`` (N,) m2/s.
@@ -102,57 +102,40 @@ class Decambering:
         """
         chord, chordwise = _along_chords(surfaces, relative_velocity)
         edge, mix = _trailing(surfaces), self._mixed(surfaces)
-        wash = np.zeros(len(edge)) if start is None else start
-        scale = np.hypot(chordwise, self.sections.across(circulation[edge], chord))
-        scale = np.maximum(scale, 1e-3 * scale.max() + np.finfo(float).tiny)
-        induction = self._induction(response, chord)
-        corrected = circulation
-        for _ in range(ITERATIONS):
-            corrected = circulation + solve(-_through_panels(wash, surfaces))
-            across = self.sections.across(corrected[edge], chord, wash)
-            lacking = mix @ self._wanted_wash(across, chordwise) - wash
-            if np.all(np.abs(lacking) <= TOLERANCE * scale):
-                break
-            wash = self._newton(across + induction @ wash, wash, chordwise, induction, mix, scale)
-        else:
-            self._give_up(np.abs(lacking) / scale)
-        return Decambered(corrected, wash, self.sections.effective_flow(across, chordwise))
+        induction = self._induction(response[edge], chord)
+        potential = self.sections.across(circulation[edge], chord)
+        first = potential if start is None else potential - induction @ start
+        across = self._newton(first, potential, induction @ mix, chordwise)
+        wash = mix @ self._wanted_wash(across, chordwise)
+        flow = self.sections.effective_flow(across, chordwise)
+        return Decambered(circulation + response @ wash, wash, flow)
 
     def feedback(self, surfaces: Sequence[Surface], response: Array) -> Array:
         """B S (n,n): the share of each strip's wanted wash that comes back to all of them."""
         chord = np.concatenate([strip_chords(s.lattice.corners)[0] for s in surfaces])
-        return self._induction(response, chord) @ self._mixed(surfaces)
+        return self._induction(response[_trailing(surfaces)], chord) @ self._mixed(surfaces)
 
-    def _newton(
-        self,
-        across_0: Array,
-        wash: Array,
-        chordwise: Array,
-        induction: Array,
-        mix: Array,
-        scale: Array,
-    ) -> Array:
-        """The wash with the linear response, by Newton's method with shortened steps."""
-        across = across_0 - induction @ wash
-        coupling = induction @ mix
+    def _newton(self, across: Array, potential: Array, coupling: Array, chordwise: Array) -> Array:
+        """The w (n,) m/s of w = w_0 - B S g(w), by Newton's method with shortened steps."""
+        scale = np.hypot(chordwise, potential)
+        scale = np.maximum(scale, 1e-3 * scale.max() + np.finfo(float).tiny)
 
         def residual(w: Array) -> Array:
-            return w - across_0 + coupling @ self._wanted_wash(w, chordwise)
+            return (w - potential + coupling @ self._wanted_wash(w, chordwise)) / scale
 
         lacking = residual(across)
         for _ in range(ITERATIONS):
-            if np.all(np.abs(lacking) <= 0.1 * TOLERANCE * scale):
-                break
+            if np.all(np.abs(lacking) <= TOLERANCE):
+                return across
             slope = self._wash_slope(across, chordwise, scale)
-            step = np.linalg.solve(np.eye(len(across)) + coupling * slope, -lacking)
-            share, best = 1.0, np.linalg.norm(lacking / scale)
-            while True:
-                trial = residual(across + share * step)
-                if np.linalg.norm(trial / scale) < (1.0 - 0.1 * share) * best or share < 0.02:
-                    break
+            step = np.linalg.solve(np.eye(len(across)) + coupling * slope, -lacking * scale)
+            share, size = 1.0, np.linalg.norm(lacking)
+            lacking = residual(across + step)
+            while np.linalg.norm(lacking) > (1.0 - 0.1 * share) * size and share > SHORTEST:
                 share *= 0.5
-            across, lacking = across + share * step, trial
-        return mix @ self._wanted_wash(across, chordwise)
+                lacking = residual(across + share * step)
+            across = across + share * step
+        return self._give_up(np.abs(lacking))
 
     def _wanted_wash(self, across: Array, chordwise: Array) -> Array:
         """g(w): the wash (n,) m/s that gives strips which feel w (n,) m/s their polars' lift."""
@@ -181,7 +164,7 @@ class Decambering:
             first = own.stop
         return mix
 
-    def _give_up(self, lacking: Array) -> None:
+    def _give_up(self, lacking: Array) -> NoReturn:
         strip = int(np.argmax(lacking))
         name, column = self._names[strip]
         raise ConvergenceError(

@@ -1,0 +1,54 @@
+"""Decambering in the course of time: each solution goes on from the wash last accepted."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from galerna.aero.vortex.decambering import Decambered, Decambering, Solve
+from galerna.aero.vortex.surface import Surface, collocation_velocities
+from galerna.contract import Array
+
+
+class Separation:
+    """What an unsteady lattice asks to bring its sections' lift to their polars.
+
+    ``found`` is the last solution. As in ``contract.LoadModel``, ``correct`` may be asked many
+    times and depends on the accepted wash and its arguments alone.
+    """
+
+    def __init__(self, decambering: Decambering) -> None:
+        self.decambering = decambering
+        self.found: Decambered | None = None
+        self._accepted: Array | None = None
+
+    def correct(
+        self, surfaces: Sequence[Surface], air: Array, circulation: Array, solve: Solve
+    ) -> Array:
+        """Circulations (N,) m2/s in place of those of potential flow.
+
+        ``air`` (P,3) m/s begins with the velocities at the N collocation points; ``solve`` is
+        that of `Decambering.response`. Raises ConvergenceError that names the strip.
+        """
+        moving = collocation_velocities(surfaces)
+        response = self.decambering.response(solve, surfaces)
+        relative = air[: len(moving)] - moving
+        self.found = self.decambering.solve(
+            surfaces, circulation, relative, response, self._accepted
+        )
+        return self.found.circulation
+
+    def accept(self) -> None:
+        """Keep the last solution's wash; part of accepting a step."""
+        if self.found is not None:
+            self._accepted = self.found.wash
+
+    def state(self) -> dict[str, np.ndarray]:
+        """The accepted wash (n,) m/s; empty before the first."""
+        return {} if self._accepted is None else {"wash": self._accepted.copy()}
+
+    def restore(self, state: Mapping[str, np.ndarray]) -> None:
+        """Take ``state`` back."""
+        self._accepted = np.array(state["wash"]) if "wash" in state else None
+        self.found = None
