@@ -280,6 +280,11 @@ class System:
         )
         return float(kinetic), float(elastic), float(-(moment @ self.gravity).sum())
 
+    def dissipation(self, state: State) -> float:
+        """Power W that the damping of beams and joints takes."""
+        rate = self.pair_answer(state).rate
+        return float(np.einsum("mi,mij,mj->", rate, self.pairs.damping, rate))
+
     def pair(self, name: str) -> int:
         """The number of a joint or spring; raises InputError with the nearest names."""
         if name not in self.pair_names:

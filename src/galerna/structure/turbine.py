@@ -63,12 +63,14 @@ class TurbineSystem:
     """A turbine ready for analysis, and where its parts are among the frames.
 
     ``parts`` maps "tower", "nacelle", "hub", "blade1", ... to frame numbers, root first;
-    ``span`` has their fractions of the part's axis.
+    ``span`` has their fractions of the part's axis, ``places`` the origin (3,) and the axes
+    (3,3) of each part as it was described.
     """
 
     system: System
     parts: Mapping[str, Integers]
     span: Mapping[str, Array]
+    places: Mapping[str, tuple[Array, Array]]
     shaft_axis: Array
     hub_center: Array
 
@@ -87,6 +89,7 @@ class _Builder:
     options: TurbineOptions
     parts: dict[str, list[str]] = field(default_factory=dict)
     span: dict[str, Array] = field(default_factory=dict)
+    places: dict[str, tuple[Array, Array]] = field(default_factory=dict)
 
     def build(self) -> TurbineSystem:
         self.structure = Structure(self.options.gravity)
@@ -101,6 +104,7 @@ class _Builder:
             self.structure.build(),
             {part: np.array([index(name) for name in names]) for part, names in self.parts.items()},
             self.span,
+            self.places,
             self.shaft,
             self.hub_center,
         )
@@ -113,7 +117,8 @@ class _Builder:
         center = np.subtract(platform.center_of_mass, platform.reference_point)
         body = rigid_body(platform.mass, center, np.array(platform.inertia))
         self.base = self.structure.frame("platform", np.array(platform.reference_point), mass=body)
-        self._note("platform", ["platform"], np.zeros(1))
+        place = np.array(platform.reference_point)
+        self._note("platform", ["platform"], np.zeros(1), place, np.eye(3))
 
     def _tower(self) -> None:
         tower = self.turbine.tower
@@ -134,7 +139,7 @@ class _Builder:
             position = np.array([*tower.axis[-1][:2], height])
             nearest = min(names, key=lambda name: abs(self._at(name)[2] - height))
             self._attach(nearest, rigid_body(mass), position, np.eye(3))
-        self._note("tower", names, span)
+        self._note("tower", names, span, np.zeros(3), np.eye(3))
 
     def _nacelle(self) -> None:
         nacelle, s = self.turbine.nacelle, self.structure
@@ -149,7 +154,7 @@ class _Builder:
             hinge("yaw bearing", self.top, "nacelle", self.top_position, np.array([0.0, 0, 1]),
                   angle=None if spring else _still, stiffness=spring, damping=nacelle.yaw_damping)
         )  # fmt: skip
-        self._note("nacelle", ["nacelle"], np.zeros(1))
+        self._note("nacelle", ["nacelle"], np.zeros(1), self.top_position, np.eye(3))
 
     def _hub(self) -> None:
         t, s = self.turbine, self.structure
@@ -167,7 +172,7 @@ class _Builder:
         hub = rigid_body(t.hub.mass, np.array([t.hub.center_of_mass, 0.0, 0.0]), inertia)
         generator = drivetrain.generator_inertia * drivetrain.gear_ratio**2
         s.frame("hub", self.hub_center, self.hub_axes, hub)
-        self._note("hub", ["hub"], np.zeros(1))
+        self._note("hub", ["hub"], np.zeros(1), self.hub_center, self.hub_axes)
         driven = (
             "generator" if self.options.flexible_shaft and drivetrain.shaft_stiffness else "hub"
         )
@@ -219,7 +224,7 @@ class _Builder:
         motion = self.options.pitch_motion
         angle = _still if motion is None else motion[k]
         s.join(hinge(f"pitch bearing {k + 1}", "hub", names[0], root, -axes[:, 2], angle=angle))
-        self._note(name, names, span)
+        self._note(name, names, span, root, pitched)
 
     def _discretised(
         self, name: str, curve: Curve, length: float, sections: SectionProperties | None, n: int
@@ -253,8 +258,8 @@ class _Builder:
     def _at(self, frame: str) -> Array:
         return self.structure.position(frame)
 
-    def _note(self, part: str, names: list[str], span: Array) -> None:
-        self.parts[part], self.span[part] = names, span
+    def _note(self, part: str, names: list[str], span: Array, origin: Array, axes: Array) -> None:
+        self.parts[part], self.span[part], self.places[part] = names, span, (origin, axes)
 
 
 def axis_curve(

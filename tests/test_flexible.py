@@ -1,0 +1,129 @@
+"""The structure under its load models: same places as the rigid machine, loads in balance."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from galerna import turbine as turbines
+from galerna.contract import Loads, Stations
+from galerna.errors import InputError
+from galerna.flexible import FlexibleMachine
+from galerna.kinematics import PrescribedMotion, PrescribedOperation
+from galerna.signals import Signal
+from galerna.simulation import Simulation
+from galerna.structure import TurbineOptions, with_initial_accelerations
+from galerna.structure.system import with_spin
+from galerna.units import DEG
+
+NREL = turbines.load("nrel5mw")
+SPAN = np.linspace(0.0, 1.0, 15)
+GROUP = (
+    Stations("blade1", SPAN), Stations("blade3", SPAN), Stations("hub"), Stations("nacelle"),
+    Stations("tower", SPAN),
+)  # fmt: skip
+
+
+@pytest.mark.parametrize("elements", [0, 12])
+def test_stations_are_where_the_rigid_machine_has_them(elements: int) -> None:
+    pitch, azimuth = 5.0 * DEG, 40.0 * DEG
+    options = TurbineOptions(
+        blade_elements=elements, tower_elements=elements, pitch=pitch, azimuth=azimuth
+    )
+    machine = FlexibleMachine(NREL, [GROUP], options)
+    operation = PrescribedOperation(
+        Signal.constant(0.0), (Signal.constant(pitch),) * 3, azimuth=azimuth
+    )
+    rigid = PrescribedMotion(NREL, operation, [GROUP]).motions[0]
+    assert machine.motions[0].position == pytest.approx(rigid.position, abs=1e-9)
+    assert machine.motions[0].rotation == pytest.approx(rigid.rotation, abs=1e-9)
+
+
+class Push:
+    """A steady force downwind on the blades: a load model without memory."""
+
+    stations = (Stations("blade1", SPAN), Stations("blade2", SPAN), Stations("blade3", SPAN))
+    channels = ()
+    coordinates: dict[str, np.ndarray] = {}  # noqa: RUF012
+    largest_step = np.inf
+
+    def __init__(self) -> None:
+        self.work, self._before = 0.0, None
+
+    def begin_step(self, time, dt, motion) -> None:
+        self._dt, self._start = dt, motion.position.copy()
+
+    def loads(self, time, motion) -> Loads:
+        loads = Loads.zero(len(motion.position))
+        loads.force[:, 0] = 20000.0
+        return loads
+
+    def end_step(self, time, motion) -> None:
+        self.work += 20000.0 * (motion.position - self._start)[:, 0].sum()
+
+    def record(self):
+        return {}
+
+    def state(self):
+        return {}
+
+    def restore(self, state) -> None:
+        pass
+
+
+def turning(machine: FlexibleMachine, push: Push, speed: float) -> None:
+    """Start with the rotor turning, its accelerations those of the loads."""
+    parts = machine.parts
+    names = [name for name in parts.parts if name.startswith(("blade", "hub"))]
+    nodes = [parts.parts[name] for name in names] + [[machine.system.names.index("generator")]]
+    state = machine.system.initial_state()
+    state = with_spin(state, parts.hub_center, speed * parts.shaft_axis, np.concatenate(nodes))
+    machine.start(state)
+    forces = machine.forces([push.loads(0.0, machine.motions[0])])
+    machine.start(with_initial_accelerations(machine.system, state, forces))
+
+
+def test_the_work_of_loads_and_torque_is_the_change_of_energy() -> None:
+    push = Push()
+    machine = FlexibleMachine(NREL, [push.stations])
+    torque, dt, angle = -3e6, 0.0025, 0.0
+    machine.set_shaft_torque(torque)
+    turning(machine, push, 1.2)
+    simulation = Simulation(machine, {"push": push}, dt)
+    before = sum(machine.system.energies(machine.accepted))
+    damped = 0.0
+    generator = machine.system.names.index("generator")
+    for _ in range(200):
+        speed = machine.accepted.velocity[generator, 3]
+        rate = machine.system.dissipation(machine.accepted)
+        simulation.advance()
+        angle += 0.5 * dt * (speed + machine.accepted.velocity[generator, 3])
+        damped += 0.5 * dt * (rate + machine.system.dissipation(machine.accepted))
+    change = sum(machine.system.energies(machine.accepted)) - before
+    balance = push.work + torque * angle - damped
+    scale = abs(push.work) + abs(torque * angle)
+    assert change == pytest.approx(balance, abs=2e-3 * scale)
+    assert abs(push.work) > 0.1 * scale
+
+
+def test_a_run_continues_from_its_state_with_the_same_bits() -> None:
+    results = []
+    for halfway in (False, True):
+        push = Push()
+        machine = FlexibleMachine(NREL, [push.stations], TurbineOptions(blade_elements=6))
+        turning(machine, push, 1.0)
+        simulation = Simulation(machine, {"push": push}, 0.02)
+        for i in range(10):
+            simulation.advance()
+            if halfway and i == 4:
+                saved = simulation.state()
+                machine = FlexibleMachine(NREL, [push.stations], TurbineOptions(blade_elements=6))
+                simulation = Simulation(machine, {"push": Push()}, 0.02)
+                simulation.restore(saved)
+        results.append(machine.accepted.position)
+    assert np.array_equal(*results)
+
+
+def test_a_part_that_does_not_exist_is_named() -> None:
+    with pytest.raises(InputError, match="blade4"):
+        FlexibleMachine(NREL, [(Stations("blade4", SPAN),)])
