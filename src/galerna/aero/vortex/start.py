@@ -26,7 +26,9 @@ from galerna.units import DEG
 Numbers = NDArray[np.int64]
 COARSE_COLUMNS = 10  #: panels along the span
 COARSE_TURN = 15.0 * DEG  #: of the rotor, between rows
-TOLERANCE = 1e-3  #: of the radius, to which the coarse wake is found
+TOLERANCE = 5e-3  #: of the radius, to which the coarse wake is found
+SWEEPS = 20  #: after which the helix must do
+FREE_SHARE = 0.5  #: of a short wake, that is free: its end is no place to be exact about
 
 
 def drifted_wake(
@@ -42,12 +44,14 @@ def drifted_wake(
     """
     columns = _columns(surfaces[0].shape[1])
     rows = _rows(ages, axis)
+    length = ages[-1] * np.linalg.norm(wind) / (2.0 * _radius(surfaces, axis))
+    free = FreeWake(length=min(1.0, FREE_SHARE * length), tolerance=TOLERANCE, sweeps=SWEEPS)
     solved = solve_steady(
         [_coarser(s, columns) for s in surfaces],
         (wind @ axis.direction) * axis.direction,
         axis=axis,
         ages=ages[rows],
-        free=FreeWake(tolerance=TOLERANCE),
+        free=free,
         core=core,
     )
     vertices, drifts = [], []
@@ -63,6 +67,12 @@ def drifted_wake(
     nothing = tuple(np.zeros((len(ages) - 1, s.shape[1])) for s in surfaces)
     centre = drifted_centre(ages, wind, drifts, axis)
     return Wake(ages, tuple(vertices), nothing, centre)
+
+
+def _radius(surfaces: Sequence[Surface], axis: RotorAxis) -> float:
+    arm = np.concatenate([s.lattice.corners.reshape(-1, 3) for s in surfaces]) - axis.origin
+    across = arm - (arm @ axis.direction)[:, None] * axis.direction
+    return float(np.linalg.norm(across, axis=1).max())
 
 
 def _coarser(surface: Surface, columns: Numbers) -> Surface:

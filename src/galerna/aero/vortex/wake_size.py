@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import pi
+from math import inf, pi
 
 from galerna.aero.vortex.ages import SLOWEST_TURN, rotor_ages
 from galerna.aero.vortex.options import VortexLatticeOptions
@@ -11,6 +11,7 @@ from galerna.contract import Array
 from galerna.errors import InputError
 from galerna.units import DEG
 
+FARTHEST_STEP = 0.1  #: radii that the wind travels while a slow rotor sheds one row
 SLOWEST_WIND = 0.01  #: over the tip speed; a slower one leaves a wake in the rotor plane
 
 
@@ -38,16 +39,18 @@ def wake_size(
     """The wake of a rotor of ``radius`` m at a mean speed rad/s, in a mean wind m/s.
 
     Its step is rounded to whole numbers of ``time_step`` s; one that is longer is left to the
-    check of the step. Raises InputError where nothing carries the wake away.
+    check of the step. Raises InputError where nothing carries the wake away, or where the rotor
+    turns backwards.
     """
-    _require_wind(options, rotor_speed, wind_speed, radius)
-    turn = max(abs(rotor_speed), SLOWEST_TURN * abs(wind_speed) / radius)
-    step = options.wake_step_s or options.wake_step_deg * DEG / turn
+    _require_a_wake(options, rotor_speed, wind_speed, radius)
+    turn = max(rotor_speed, SLOWEST_TURN * abs(wind_speed) / radius)
+    longest = FARTHEST_STEP * radius / abs(wind_speed) if wind_speed else inf
+    step = options.wake_step_s or min(options.wake_step_deg * DEG / turn, longest)
     if time_step is not None and time_step <= step * (1.0 + 1e-9):
         step = max(round(step / time_step), 1) * time_step
     diameters = options.wake_length_diameters
     if options.wake_revolutions is not None:
-        speed = max(abs(wind_speed), 0.05 * abs(rotor_speed) * radius)
+        speed = max(abs(wind_speed), 0.05 * rotor_speed * radius)
         diameters = options.wake_revolutions * 2.0 * pi / turn * speed / (2.0 * radius)
     ages = rotor_ages(
         rotor_speed,
@@ -62,14 +65,20 @@ def wake_size(
     ages[1:] *= step / ages[1]  # to the last bit the step itself
     length = float(ages[-1])
     return WakeSize(
-        ages, length * abs(wind_speed) / (2.0 * radius), length * abs(rotor_speed) / (2.0 * pi)
+        ages, length * abs(wind_speed) / (2.0 * radius), length * rotor_speed / (2.0 * pi)
     )
 
 
-def _require_wind(
+def _require_a_wake(
     options: VortexLatticeOptions, rotor_speed: float, wind_speed: float, radius: float
 ) -> None:
-    if abs(wind_speed) > SLOWEST_WIND * abs(rotor_speed) * radius:
+    if rotor_speed < 0.0:
+        raise InputError(
+            "rotor speed",
+            "the rotor turns backwards, where no vortices leave its blades' trailing edges",
+            "model: bem knows such sections from their polars",
+        )
+    if abs(wind_speed) > SLOWEST_WIND * rotor_speed * radius:
         return
     if rotor_speed and options.wake == "free" and options.start == "impulsive":
         return
