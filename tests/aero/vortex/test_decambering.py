@@ -229,5 +229,6 @@ def test_the_response_is_that_of_the_circulation() -> None:
 
 def test_what_does_not_converge_names_the_strip(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(decambering, "ITERATIONS", 1)
+    monkeypatch.setattr(decambering, "SETTLING_STEPS", 0)
     with pytest.raises(ConvergenceError, match="blade1: the lift of panel column"):
         sweep([20.0], 10)

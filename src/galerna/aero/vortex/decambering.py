@@ -39,8 +39,8 @@ from galerna.contract import Array
 from galerna.errors import ConvergenceError
 
 MIXING = 0.25  #: chords
-TOLERANCE = 1e-8  #: of the velocity across, over the speed
-ITERATIONS = 100
+TOLERANCE = 1e-6  #: of the velocity across, over the speed
+ITERATIONS, SETTLING_STEPS = 30, 300
 SHORTEST = 0.02  #: of Newton's steps
 SLOPE_STEP = np.radians(0.25)  #: on both sides, over which a polar's slope is taken
 Solve = Callable[[Array], Array]
@@ -116,7 +116,11 @@ class Decambering:
         return self._induction(response[_trailing(surfaces)], chord) @ self._mixed(surfaces)
 
     def _newton(self, across: Array, potential: Array, coupling: Array, chordwise: Array) -> Array:
-        """The w (n,) m/s of w = w_0 - B S g(w), by Newton's method with shortened steps."""
+        """The w (n,) m/s of w = w_0 - B S g(w), by Newton's method with shortened steps.
+
+        Where these lead nowhere, the solution is followed as one that settles in time,
+        dw/dt = w_0 - B S g(w) - w, in implicit steps: that finds stable ones alone.
+        """
         scale = np.hypot(chordwise, potential)
         scale = np.maximum(scale, 1e-3 * scale.max() + np.finfo(float).tiny)
 
@@ -124,14 +128,18 @@ class Decambering:
             return (w - potential + coupling @ self._wanted_wash(w, chordwise)) / scale
 
         lacking = residual(across)
-        for _ in range(ITERATIONS):
+        for iteration in range(ITERATIONS + SETTLING_STEPS):
             if np.all(np.abs(lacking) <= TOLERANCE):
                 return across
-            slope = self._wash_slope(across, chordwise, scale)
-            step = np.linalg.solve(np.eye(len(across)) + coupling * slope, -lacking * scale)
+            settling = iteration >= ITERATIONS
+            matrix = coupling * self._wash_slope(across, chordwise, scale)
+            matrix += np.eye(len(across)) * (2.0 if settling else 1.0)
+            step = np.linalg.solve(matrix, -lacking * scale)
             share, size = 1.0, np.linalg.norm(lacking)
             lacking = residual(across + step)
-            while np.linalg.norm(lacking) > (1.0 - 0.1 * share) * size and share > SHORTEST:
+            while not settling and np.linalg.norm(lacking) > (1.0 - 0.1 * share) * size:
+                if share <= SHORTEST:
+                    break
                 share *= 0.5
                 lacking = residual(across + share * step)
             across = across + share * step
