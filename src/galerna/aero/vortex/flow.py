@@ -1,9 +1,13 @@
-"""The flow about surfaces at one instant: wind, wake and bound vortices together."""
+"""The flow about surfaces at one instant: wind, wake and bound vortices together.
+
+A ``separation`` brings the lift of the sections to their polars.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -12,6 +16,7 @@ from galerna.aero.vortex.field import InducedField
 from galerna.aero.vortex.loads import SurfaceLoads, lattice_loads
 from galerna.aero.vortex.mirror import MirrorPlane
 from galerna.aero.vortex.quasi_steady import strip_velocities
+from galerna.aero.vortex.separation import Separation
 from galerna.aero.vortex.shedding import EdgePanels
 from galerna.aero.vortex.sheet import Sheet
 from galerna.aero.vortex.surface import (
@@ -63,11 +68,18 @@ def wind_at(
 
 
 def bound_flow(
-    system: BoundSystem, surfaces: Sequence[Surface], wind: Array, wake_velocity: Array
+    system: BoundSystem,
+    surfaces: Sequence[Surface],
+    wind: Array,
+    wake_velocity: Array,
+    separation: Separation | None = None,
 ) -> Flow:
     """The flow with a wake that is known."""
-    normal = _needed_velocity(surfaces, wind + wake_velocity)
-    return Flow(split_panels(system.solve(normal), surfaces), wind, wake_velocity)
+    air = wind + wake_velocity
+    circulation = system.solve(_needed_velocity(surfaces, air))
+    if separation is not None:
+        circulation = separation.correct(surfaces, air, circulation, system.solve)
+    return Flow(split_panels(circulation, surfaces), wind, wake_velocity)
 
 
 def edge_flow(
@@ -77,14 +89,19 @@ def edge_flow(
     far_velocity: Array,
     edges: Sequence[EdgePanels],
     mirror: MirrorPlane | None,
+    separation: Separation | None = None,
 ) -> Flow:
     """The flow with a wake whose first panels depend on the circulation sought."""
     points, normals = control_points(surfaces), collocation_normals(surfaces)
-    needed = _needed_velocity(surfaces, wind + far_velocity)
+    air = wind + far_velocity
+    needed = _needed_velocity(surfaces, air)
     pairs = [e.normal_velocity(points[: len(normals)], normals, mirror) for e in edges]
     needed -= np.sum([known for known, _ in pairs], axis=0)
     shares = np.hstack([share for _, share in pairs])
-    solved = system.solve_with_strips(needed, shares) if shares.any() else system.solve(needed)
+    solve = partial(system.solve_with_strips, strips=shares) if shares.any() else system.solve
+    solved = solve(needed)
+    if separation is not None:
+        solved = separation.correct(surfaces, air, solved, solve)
     circulation = split_panels(solved, surfaces)
     near = [e.sheet(g[-1]) for e, g in zip(edges, circulation, strict=True)]
     near_velocity = InducedField(near, mirror=mirror).velocity(points)
@@ -98,12 +115,16 @@ def strip_flow(
     wake: Wake,
     core: VortexCore | None,
     mirror: MirrorPlane | None,
+    separation: Separation | None = None,
 ) -> Flow:
     """The flow with a wake whose strips carry the circulation of the trailing edges."""
     strips = strip_velocities(wake, control_points(surfaces), core, mirror)
     normals = collocation_normals(surfaces)
     normal_strips = np.einsum("pni,pi->pn", strips[: len(normals)], normals)
-    circulation = system.solve_with_strips(_needed_velocity(surfaces, wind), normal_strips)
+    solve = partial(system.solve_with_strips, strips=normal_strips)
+    circulation = solve(_needed_velocity(surfaces, wind))
+    if separation is not None:
+        circulation = separation.correct(surfaces, wind, circulation, solve)
     wake_velocity = np.einsum("pni,n->pi", strips, circulation[system.trailing_rings])
     return Flow(split_panels(circulation, surfaces), wind, wake_velocity)
 
