@@ -9,7 +9,7 @@ import pytest
 
 from galerna.aero.vortex.ages import growing_ages, uniform_ages
 from galerna.aero.vortex.cores import VortexCore
-from galerna.aero.vortex.wake import RotorAxis, Wake, helical_wake, straight_wake
+from galerna.aero.vortex.wake import THINNEST, RotorAxis, Wake, helical_wake, straight_wake
 from galerna.errors import InputError
 
 GROWING = growing_ages(0.05, 4.0, near=0.3, growth=1.2, widest=0.35)
@@ -128,7 +128,10 @@ def test_cores_grow_with_age_and_leave_the_trailing_edge_singular() -> None:
     radius = np.broadcast_to(sheet.core_radius, sheet.vertices.shape[:2])
     assert np.all(radius[0] == 0.0)
     assert np.all(np.diff(radius[1:, 0]) > 0.0)
-    assert radius[1, 0] == pytest.approx(VortexCore(0.2).radius(GROWING[1], 5.0))
+    way = np.linalg.norm(wake.vertices[0][1] - wake.vertices[0][0], axis=1).mean()
+    assert radius[1, 0] == pytest.approx(THINNEST * way)
+    assert radius[-1, 0] == pytest.approx(VortexCore(0.2).radius(GROWING[-1], 5.0))
+    assert np.all(wake.core_radius(VortexCore(0.2), edge=0.2)[0] >= 0.2)
     first, rest = (wake.sheets(VortexCore(0.2), rows=r)[0] for r in (slice(1), slice(1, None)))
     assert first.circulation.shape == (1, 2)
     assert rest.circulation.shape == (len(GROWING) - 2, 2)

@@ -28,37 +28,44 @@ from galerna.aero.vortex.sheet import Sheet
 from galerna.aero.vortex.surface import Surface
 from galerna.contract import Array
 
+LONGEST_DELAY = 100.0  #: steps; more where the air hardly leaves the edge
 MOST_RINGS = 8  #: in the first panel of a wake
 
 
 @dataclass(frozen=True, eq=False)
 class History:
-    """Trailing circulation over time: unknown now, ``before`` (n,) a step ``dt`` s ago.
+    """Trailing circulation over time: unknown at the end of a step of ``dt`` s, known before.
 
-    ``past`` (n,) was ``past_step`` s before that; with 0 s there is no past but ``before``.
+    ``values`` (h,n) m2/s stood ``times`` (h,) s before the step's beginning, the newest first, at
+    0. It is linear in between, and was the oldest for ever before.
     """
 
     dt: float
-    before: Array
-    past: Array
-    past_step: float
+    times: Array
+    values: Array
 
     def mean(self, start: Array, end: Array) -> tuple[Array, Array]:
         """The mean from ``start`` to ``end`` s ago, (...,n): a known part, and the share of now."""
-        (new, now, past), (new_0, now_0, past_0) = self._integrals(end), self._integrals(start)
-        known = (now - now_0) * self.before + (past - past_0) * self.past
-        return known / (end - start), (new - new_0) / (end - start)
+        (known, new), (known_0, new_0) = self._integral(end), self._integral(start)
+        return (known - known_0) / (end - start), (new - new_0) / (end - start)
 
-    def _integrals(self, ago: Array) -> tuple[Array, Array, Array]:
-        """Weights of the three circulations in the integral over the last ``ago`` s."""
+    def _integral(self, ago: Array) -> tuple[Array, Array]:
+        """The integral over the last ``ago`` s: a known part, and the weight of now."""
         step = np.minimum(ago, self.dt)
-        new, now = step - 0.5 * step**2 / self.dt, 0.5 * step**2 / self.dt
-        rest = np.maximum(ago - self.dt, 0.0)
-        if self.past_step == 0.0:
-            return new, now + rest, np.zeros_like(rest)
-        older = np.minimum(rest, self.past_step)
-        fall = 0.5 * older**2 / self.past_step
-        return new, now + older - fall, fall + rest - older
+        fall = 0.5 * step**2 / self.dt
+        known, rest = fall * self.values[0], np.maximum(ago - self.dt, 0.0)
+        for i, length in enumerate(np.diff(self.times)):
+            part = np.minimum(rest, length)
+            slope = (self.values[i + 1] - self.values[i]) / length
+            known += part * (self.values[i] + 0.5 * part * slope)
+            rest = rest - part
+        return known + rest * self.values[-1], step - fall
+
+    def extended(self, value: Array, span: float) -> tuple[Array, Array]:
+        """Times and values once the new one is known, as far as ``span`` s back."""
+        times = np.concatenate([[0.0], self.times + self.dt])
+        kept = int(np.searchsorted(times, span)) + 1
+        return times[:kept], np.vstack([value, self.values])[:kept]
 
 
 @dataclass(frozen=True, eq=False)
@@ -90,14 +97,15 @@ def shedding(
     """
     lattice = surface.lattice
     if classical or lattice.rings == "edges":
-        nothing = np.zeros_like(history.before)
-        return Shedding(history, nothing, np.array([0.0, 1.0]), history.before, nothing)
+        before = history.values[0]
+        nothing = np.zeros_like(before)
+        return Shedding(history, nothing, np.array([0.0, 1.0]), before, nothing)
     off = edge_velocity - Lattice(surface.velocity, lattice.rings).vertices[-1]
     speed = np.linalg.norm(0.5 * (off[1:] + off[:-1]), axis=1)
     last = lattice.corners[-1] - lattice.corners[-2]
     chord = np.linalg.norm(0.5 * (last[1:] + last[:-1]), axis=1)
-    longest = 2.0 * (panel + history.dt)  # of a delay: where the air hardly leaves the edge
-    delay = np.minimum(0.5 * chord / np.maximum(speed, 1e-9 * chord / history.dt), longest)
+    longest = LONGEST_DELAY * history.dt
+    delay = 0.5 * chord / np.maximum(speed, 0.5 * chord / longest)
     known, share = history.mean(delay, delay + history.dt)
     rings = np.clip(np.ceil(np.log2(0.5 * panel / delay.mean() + 1.0) - 0.05), 1, MOST_RINGS)
     rows = (2.0 ** np.arange(rings + 1) - 1.0) / (2.0**rings - 1.0)

@@ -113,8 +113,10 @@ class _Memory:
     """Everything the next step depends on, but for the factorisation.
 
     ``wake`` as it was last shed, ``elapsed`` s ago, ``convection`` its motion since and
-    ``shed`` (n,) the time integrals of the trailing circulations since; the surfaces' corners
-    and circulations now, and the ``past`` circulations ``past_step`` s before (0: none).
+    ``shed`` (n,) the time integrals of what the trailing edges have shed since; the surfaces'
+    corners and circulations now, and the ``past`` circulations ``past_step`` s before (0: none);
+    the ``trailing`` circulations (h,n) for as long as they still have to be shed, newest first,
+    and the ``times`` (h,) s before now when they were.
     ``speed`` m/s is the highest of the air along the surfaces, to judge the wake by.
     """
 
@@ -123,6 +125,8 @@ class _Memory:
     circulation: list[Array]
     speed: float
     shed: list[Array]
+    trailing: list[Array]
+    times: list[Array]
     elapsed: float = 0.0
     convection: Convection | None = None
     earlier: Earlier | None = None
@@ -223,6 +227,10 @@ class UnsteadyLattice:
         trailing = [g[-1] for g in solution.circulation]
         for panel, new, edge in zip(trial.wake.circulation, trial.shed, trailing, strict=True):
             panel[0] += trial.dt / self.largest_step * new.share * edge
+        trails = [
+            new.history.extended(edge, self.largest_step + new.delay.max())
+            for new, edge in zip(trial.shed, trailing, strict=True)
+        ]
         shed = [
             i + trial.dt * new.total(edge)
             for i, new, edge in zip(before.shed, trial.shed, trailing, strict=True)
@@ -234,6 +242,8 @@ class UnsteadyLattice:
             speed=_speed(surfaces, solution.flow.wind),
             elapsed=before.elapsed + trial.dt,
             shed=shed,
+            trailing=[values for _, values in trails],
+            times=[times for times, _ in trails],
             past=before.circulation,
             past_step=trial.dt,
         )
@@ -270,8 +280,13 @@ class UnsteadyLattice:
         self._memory = _from_arrays(state, self.ages) if state else None
         corners = [] if self._memory is None else self._memory.corners
         surfaces = [Surface.at_rest(c, self.options.rings) for c in corners]
+        self._name(len(surfaces))
         bound = {k.removeprefix("system_"): v for k, v in state.items() if k[:7] == "system_"}
         self.system.restore(bound, surfaces)
+
+    def _name(self, surfaces: int) -> None:
+        if not self._names:
+            self._names = tuple(f"surface {i + 1}" for i in range(surfaces))
 
     def _overflows(self, elapsed: float) -> bool:
         return elapsed > self.largest_step * (1.0 + STEP_TOLERANCE)
@@ -295,8 +310,7 @@ class UnsteadyLattice:
     ) -> _Memory:
         """The flow before the first step: about a wake that is given or laid out along the wind."""
         options = self.options
-        if not self._names:
-            self._names = tuple(f"surface {i + 1}" for i in range(len(surfaces)))
+        self._name(len(surfaces))
         wake = self._first_wake(time, surfaces, axis) if wake is None else wake
         wake.attach([s.lattice.vertices[-1] for s in surfaces])
         self.system.place(surfaces)
@@ -313,6 +327,8 @@ class UnsteadyLattice:
             flow.circulation,
             _speed(surfaces, wind),
             [np.zeros_like(g[-1]) for g in flow.circulation],
+            [g[-1:].copy() for g in flow.circulation],
+            [np.zeros(1) for _ in flow.circulation],
         )
 
     def _first_wake(self, time: float, surfaces: Sequence[Surface], axis: RotorAxis | None) -> Wake:
@@ -352,18 +368,13 @@ class UnsteadyLattice:
 
     def _shedding(self, memory: _Memory, surfaces: Sequence[Surface], dt: float) -> list[Shedding]:
         assert memory.convection is not None
-        past = memory.past or memory.circulation
+        pairs = zip(memory.times, memory.trailing, strict=True)
+        histories = [History(dt, times, values) for times, values in pairs]
+        classical = self.options.classical_shedding
+        edge_velocities = (u[0] for u in memory.convection.velocity)
         return [
-            shedding(
-                s,
-                u[0],
-                History(dt, g[-1], b[-1], memory.past_step),
-                self.largest_step,
-                self.options.classical_shedding,
-            )
-            for s, u, g, b in zip(
-                surfaces, memory.convection.velocity, memory.circulation, past, strict=True
-            )
+            shedding(s, u, h, self.largest_step, classical)
+            for s, u, h in zip(surfaces, edge_velocities, histories, strict=True)
         ]
 
     def _far_field(self, wake: Wake) -> InducedField | None:
@@ -427,7 +438,7 @@ class UnsteadyLattice:
         convection, elapsed = memory.convection, memory.elapsed
         assert convection is not None
         fraction = courant_numbers(self.ages, elapsed)
-        if self.options.scheme == "heun" and self.options.free:
+        if self.options.scheme == "heun":
             end = self._fluid_velocity(memory, wake, time)
             mean = corrected(convection.velocity, end, fraction)
             better = replace(memory, convection=Convection(mean, None, convection.axis))
@@ -468,6 +479,8 @@ def _to_arrays(memory: _Memory) -> dict[str, np.ndarray]:
         "corners": memory.corners,
         "circulation": memory.circulation,
         "shed": memory.shed,
+        "trailing": memory.trailing,
+        "time": memory.times,
         "past": memory.past,
     }
     arrays = {"times": np.array([memory.elapsed, memory.past_step, memory.speed])}
@@ -511,6 +524,8 @@ def _from_arrays(arrays: Mapping[str, np.ndarray], ages: Array) -> _Memory:
         kind("circulation"),
         speed,
         kind("shed"),
+        kind("trailing"),
+        kind("time"),
         elapsed,
         convection,
         past,

@@ -31,6 +31,7 @@ from galerna.contract import Array
 from galerna.errors import InputError
 
 STEP_TOLERANCE = 1e-6  #: of the first panel's age, by which a step may exceed it
+THINNEST = 0.25  #: of the way that fluid has gone from the edge: no core is thicker
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,11 +106,16 @@ class Wake:
     def core_radius(self, core: VortexCore | None, edge: float = 0.0) -> tuple[Array | float, ...]:
         """Core radii (K+1,1) m of each surface's rows, from their age and strongest circulation.
 
-        Row 0 takes that of the bound ring's ``edge`` m with which it coincides.
+        Row 0 takes that of the bound ring's ``edge`` m with which it coincides. Behind a bound
+        vortex without a core they grow as `THINNEST` says, or they would blunt what the sheet
+        does to the surface that has just shed it.
         """
         if core is None:
             return tuple(0.0 for _ in self.vertices)
-        return tuple(_row_cores(core, self.ages, g, edge) for g in self.circulation)
+        return tuple(
+            _row_cores(core, self.ages, x, g, edge)
+            for x, g in zip(self.vertices, self.circulation, strict=True)
+        )
 
     def sheets(
         self, core: VortexCore | None = None, *, rows: slice = slice(None), edge: float = 0.0
@@ -180,10 +186,18 @@ def interpolated(moved: Array, fraction: Array) -> Array:
     return out
 
 
-def _row_cores(core: VortexCore, ages: Array, circulation: Array, edge: float) -> Array:
+def _row_cores(
+    core: VortexCore, ages: Array, vertices: Array, circulation: Array, edge: float
+) -> Array:
     strongest = np.abs(circulation).max(axis=1)
     radius = core.radius(ages, np.concatenate([strongest[:1], strongest]))
     radius[0] = edge
+    way = 0.0
+    for k in range(1, len(ages) if edge == 0.0 else 0):
+        way += float(np.linalg.norm(vertices[k] - vertices[k - 1], axis=1).mean())
+        if radius[k] <= THINNEST * way:
+            break
+        radius[k] = THINNEST * way
     return radius[:, None]
 
 
