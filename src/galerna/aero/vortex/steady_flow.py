@@ -11,8 +11,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from galerna.aero.vortex.biot_savart import direct_velocity
 from galerna.aero.vortex.cores import VortexCore
-from galerna.aero.vortex.field import induced_velocity
 from galerna.aero.vortex.helix import carried, drifted_centre
 from galerna.aero.vortex.influence import strip_influence
 from galerna.aero.vortex.loads import SurfaceLoads, lattice_loads
@@ -125,19 +125,16 @@ class SteadyFlow:
 
     def induced(self, points: Array, precision: str) -> Array:
         """Velocity (k,3) m/s that everything induces at points (k,3) m, by direct summation."""
-        return induced_velocity(self.sheets(), points, precision=precision, mirror=self.mirror)
+        sheets = self._bound_sheets() + self.wake().sheets(self.core)
+        return self._by_all(lambda x: direct_velocity(sheets, x, precision), points)
 
     def loads(self, density: float) -> list[SurfaceLoads]:
         """Loads of all surfaces in air of a density kg/m3."""
         points = segment_points(self.surfaces)
         trailing = np.concatenate([g[-1] for g in self.circulation])
-        bound = [
-            Sheet(vertices, g)
-            for s, g in zip(self.surfaces, self.circulation, strict=True)
-            for vertices in self._images(s.lattice.vertices)
-        ]
+        bound = self._bound_sheets()
         velocity = self.air(points) + np.einsum("kja,j->ka", self._strips(points), trailing)
-        velocity += induced_velocity(bound, points, mirror=self.mirror)
+        velocity += self._by_all(lambda x: direct_velocity(bound, x), points)
         relative = velocity - segment_velocities(self.surfaces)
         loads = lattice_loads(self.surfaces, self.circulation, relative, density)
         if self.sector is None:
@@ -149,19 +146,25 @@ class SteadyFlow:
 
     def _strips(self, points: Array) -> Array:
         """Velocity (k,n,3) 1/m of each strip of wake, images and all, of circulation 1."""
-        parts = []
-        for rows, radius in zip(self.rows, self.wake().core_radius(self.core), strict=True):
-            part = np.zeros((len(points), rows.shape[1] - 1, 3))
-            for vertices in self._images(rows):
-                part += strip_influence(vertices, points, radius)
-                if self.mirror is not None:
-                    image = strip_influence(vertices, self.mirror.reflect_points(points), radius)
-                    part += self.mirror.reflect_vectors(image)
-            parts.append(part)
-        return np.concatenate(parts, axis=1)
+        wakes = list(zip(self.rows, self.wake().core_radius(self.core), strict=True))
 
-    def _images(self, vertices: Array) -> list[Array]:
-        return [vertices] if self.sector is None else self.sector.images(vertices)
+        def of_own(x: Array) -> Array:
+            return np.concatenate([strip_influence(rows, x, r) for rows, r in wakes], axis=1)
+
+        return self._by_all(of_own, points)
+
+    def _by_all(self, of_own: Callable[[Array], Array], points: Array) -> Array:
+        """Velocity (k,...,3) by all sectors or images, from that by the surfaces solved for."""
+        if self.sector is not None:
+            return self.sector.sum_of_sectors(of_own, points)
+        velocity = of_own(points)
+        if self.mirror is not None:
+            velocity += self.mirror.reflect_vectors(of_own(self.mirror.reflect_points(points)))
+        return velocity
+
+    def _bound_sheets(self) -> list[Sheet]:
+        bound = zip(self.surfaces, self.circulation, strict=True)
+        return [Sheet(s.lattice.vertices, g) for s, g in bound]
 
 
 def extent(surfaces: list[Surface], axis: RotorAxis | None) -> float:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -19,7 +20,7 @@ class RotationalSymmetry:
     axis: Array
     center: Array
 
-    @property
+    @cached_property
     def rotations(self) -> Array:
         """Rotations (order,3,3) from the first sector to each."""
         unit = np.asarray(self.axis, dtype=float) / np.linalg.norm(self.axis)
@@ -29,6 +30,17 @@ class RotationalSymmetry:
     def images(self, points: Array) -> list[Array]:
         """Points (...,3) m of the first sector as they stand in each."""
         return [self.center + (points - self.center) @ turn.T for turn in self.rotations]
+
+    def sum_of_sectors(self, of_first: Callable[[Array], Array], points: Array) -> Array:
+        """Vectors (k,...,3) at points (k,3) m by all sectors, each the first one's turned.
+
+        ``of_first`` gives those of the first sector, and is asked once, at the points as they
+        stand to each sector.
+        """
+        seen = [self.center + (points - self.center) @ turn for turn in self.rotations]
+        vectors = of_first(np.concatenate(seen))
+        parts = vectors.reshape(self.order, *points.shape[:1], *vectors.shape[1:])
+        return np.einsum("bac,b...c->...a", self.rotations, parts)
 
     def turn_vectors(self, vectors: Array, sector: int) -> Array:
         """Vectors (...,3) of the first sector as they stand in another."""
