@@ -14,6 +14,7 @@ from galerna.aero.vortex.segments import (
     add_tile,
     make_block,
     set_segment,
+    whole_vectors,
 )
 from galerna.aero.vortex.sheet import Sheet
 from galerna.aero.vortex.simd import FASTMATH
@@ -97,7 +98,7 @@ def _sum(table, shapes, points, velocity, like):  # type: ignore[no-untyped-def]
 def _sum_at(table, shapes, points, velocity, like):  # type: ignore[no-untyped-def]
     """Velocity (k,3) at up to LANES points (k,3)."""
     block = make_block(WIDEST, like)
-    origin = enter(points, block)
+    origin, lanes = enter(points, block), whole_vectors(len(points))
     for sheet in range(len(shapes)):
         first, rows, columns = shapes[sheet]
         tiles = max(1, -(-(columns - 1) // (WIDEST - 1)))
@@ -107,7 +108,7 @@ def _sum_at(table, shapes, points, velocity, like):  # type: ignore[no-untyped-d
                 bottom = min(top + _ROWS, rows - 1)
                 add_tile(
                     table, first + top * columns + left, columns, bottom - top + 1,
-                    right - left + 1, (top == 0, left == 0), origin, block,
+                    right - left + 1, (top == 0, left == 0), origin, lanes, block,
                 )  # fmt: skip
                 leave(block, velocity)
 

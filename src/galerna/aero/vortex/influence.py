@@ -6,7 +6,14 @@ import numpy as np
 from numba import njit, prange
 
 from galerna.aero.vortex.biot_savart import enter
-from galerna.aero.vortex.segments import LANES, NUMBERS, add_tile, make_block, set_segment
+from galerna.aero.vortex.segments import (
+    LANES,
+    NUMBERS,
+    add_tile,
+    make_block,
+    set_segment,
+    whole_vectors,
+)
 from galerna.aero.vortex.simd import FASTMATH
 from galerna.contract import Array
 
@@ -65,16 +72,16 @@ def _add_rings(table, rows, columns, points, normals, influence):  # type: ignor
         low = number * LANES
         high = min(low + LANES, len(points))
         block = make_block(2, table)
-        origin = enter(points[low:high], block)
+        origin, lanes = enter(points[low:high], block), whole_vectors(high - low)
         for i in range(rows + 1):
             for j in range(columns + 1):
                 k, ring = i * (columns + 1) + j, i * columns + j
                 if j < columns:
-                    add_tile(table, k, 1, 1, 2, (True, False), origin, block)
+                    add_tile(table, k, 1, 1, 2, (True, False), origin, lanes, block)
                     below, above = ring if i < rows else -1, ring - columns
                     _share(block, normals[low:high], below, above, influence[low:high])
                 if i < rows:
-                    add_tile(table, k, columns + 1, 2, 1, (False, True), origin, block)
+                    add_tile(table, k, columns + 1, 2, 1, (False, True), origin, lanes, block)
                     left, right = ring - 1 if j > 0 else -1, ring if j < columns else -1
                     _share(block, normals[low:high], left, right, influence[low:high])
 
@@ -101,14 +108,15 @@ def _add_strips(table, rows, columns, points, influence):  # type: ignore[no-unt
         low = number * LANES
         high = min(low + LANES, len(points))
         block = make_block(2, table)
-        origin, part = enter(points[low:high], block), influence[low:high]
+        origin, lanes = enter(points[low:high], block), whole_vectors(high - low)
+        part = influence[low:high]
         for j in range(columns):
-            add_tile(table, j, columns, rows, 1, (False, True), origin, block)
+            add_tile(table, j, columns, rows, 1, (False, True), origin, lanes, block)
             _add(block, part, j - 1, 1.0, j, -1.0)
             if j < columns - 1:
-                add_tile(table, j, 1, 1, 2, (True, False), origin, block)
+                add_tile(table, j, 1, 1, 2, (True, False), origin, lanes, block)
                 _add(block, part, j, 1.0, -1, 0.0)
-                add_tile(table, end + j, 1, 1, 2, (True, False), origin, block)
+                add_tile(table, end + j, 1, 1, 2, (True, False), origin, lanes, block)
                 _add(block, part, j, -1.0, -1, 0.0)
 
 

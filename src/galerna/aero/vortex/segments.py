@@ -65,6 +65,12 @@ def make_block(columns, like):  # type: ignore[no-untyped-def]
     )
 
 
+@njit(cache=True)
+def whole_vectors(points):  # type: ignore[no-untyped-def]
+    """Lanes that hold so many points, in whole vectors of any processor."""
+    return (points + 15) // 16 * 16
+
+
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
 def set_segment(numbers, start, end, core_squared, circulation):  # type: ignore[no-untyped-def]
     """Numbers (6,) of a segment: direction, length squared, core to the fourth, strength."""
@@ -78,13 +84,14 @@ def set_segment(numbers, start, end, core_squared, circulation):  # type: ignore
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
-def add_tile(table, first, stride, rows, columns, borders, origin, block):  # type: ignore[no-untyped-def]
+def add_tile(table, first, stride, rows, columns, borders, origin, lanes, block):  # type: ignore[no-untyped-def]
     """Add to the block's velocity what a tile of vertices (rows,columns) of a table induces.
 
     ``table`` (k,NUMBERS): position (3,) m of vertex (i,j), and by `set_segment` the segments from
     (i,j-1) and from (i-1,j) to it; it is row ``first`` + i ``stride`` + j. ``borders``: whether
     the segments along the first row and along the first column are the tile's own, or
-    another's. The block's points count from ``origin`` (3,) m.
+    another's. The block's points count from ``origin`` (3,) m; the first ``lanes`` of
+    them are served, see `whole_vectors`.
     """
     points, velocity, distances = block
     number = points.dtype.type
@@ -93,14 +100,14 @@ def add_tile(table, first, stride, rows, columns, borders, origin, block):  # ty
         for j in range(columns):
             k = first + i * stride + j
             x, y, z = table[k, 0] - origin[0], table[k, 1] - origin[1], table[k, 2] - origin[2]
-            _distances(points, distances, now + j, number(x), number(y), number(z))
+            _distances(points, distances, now + j, number(x), number(y), number(z), lanes)
             if j > 0 and (i > 0 or borders[0]) and table[k, 8] != 0.0:
                 ex, ey, ez = table[k, 3], table[k, 4], table[k, 5]
                 _velocity(
                     points, distances, velocity, now + j - 1, now + j,
                     number(ex), number(ey), number(ez),
                     number(ey * z - ez * y), number(ez * x - ex * z), number(ex * y - ey * x),
-                    number(table[k, 6]), number(table[k, 7]), number(table[k, 8]),
+                    number(table[k, 6]), number(table[k, 7]), number(table[k, 8]), lanes,
                 )  # fmt: skip
             if i > 0 and (j > 0 or borders[1]) and table[k, 14] != 0.0:
                 ex, ey, ez = table[k, 9], table[k, 10], table[k, 11]
@@ -108,7 +115,7 @@ def add_tile(table, first, stride, rows, columns, borders, origin, block):  # ty
                     points, distances, velocity, before + j, now + j,
                     number(ex), number(ey), number(ez),
                     number(ey * z - ez * y), number(ez * x - ex * z), number(ex * y - ey * x),
-                    number(table[k, 12]), number(table[k, 13]), number(table[k, 14]),
+                    number(table[k, 12]), number(table[k, 13]), number(table[k, 14]), lanes,
                 )  # fmt: skip
 
 
@@ -148,11 +155,11 @@ def _limits_of(like):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
-def _distances(points, distances, vertex, vx, vy, vz):  # type: ignore[no-untyped-def]
+def _distances(points, distances, vertex, vx, vy, vz, lanes):  # type: ignore[no-untyped-def]
     prefer_wide_vectors()
     least, _, _, vanishing = _limits(points)
     nothing = vanishing - vanishing
-    for n in range(LANES):
+    for n in range(lanes):
         x, y, z = points[n] - vx, points[LANES + n] - vy, points[2 * LANES + n] - vz
         square = x * x + y * y + z * z
         root = inverse_square_root(square + vanishing)
@@ -162,13 +169,15 @@ def _distances(points, distances, vertex, vx, vy, vz):  # type: ignore[no-untype
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
-def _velocity(points, distances, velocity, start, end, ex, ey, ez, mx, my, mz, l2, core, strength):  # type: ignore[no-untyped-def]
+def _velocity(  # type: ignore[no-untyped-def]
+    points, distances, velocity, start, end, ex, ey, ez, mx, my, mz, l2, core, strength, lanes
+):
     """Equation (2) for one segment; m = e x a."""
     prefer_wide_vectors()
     _, thinnest, beside, vanishing = _limits(points)
     core = max(core, thinnest * l2 * l2)
     least = beside * l2
-    for n in range(LANES):
+    for n in range(lanes):
         x, y, z = points[n], points[LANES + n], points[2 * LANES + n]
         cx, cy, cz = ey * z - ez * y - mx, ez * x - ex * z - my, ex * y - ey * x - mz
         d2 = cx * cx + cy * cy + cz * cz
