@@ -7,7 +7,16 @@ from importlib import import_module
 
 from .framework import Case
 
-MODULES = ("bem", "phase_vi", "corrections", "turbulence", "structure", "vibration", "multibody")
+MODULES = (
+    "bem",
+    "phase_vi",
+    "corrections",
+    "turbulence",
+    "structure",
+    "vibration",
+    "multibody",
+    "lattice_sharpy",
+)
 
 
 def cases() -> Sequence[Case]:

@@ -50,6 +50,11 @@ class Check:
         return bool(math.isfinite(self.value) and abs(self.difference) <= self.tolerance)
 
 
+def statement(text: str, holds: bool, source: str, *, judged: bool = False) -> Check:
+    """A sentence of the literature, 1 where galerna's figures bear it out and 0 where not."""
+    return Check(text, float(holds), 1.0, source, 0.0 if judged else None, "1: holds")
+
+
 @dataclass(frozen=True)
 class Case:
     """A named validation case: ``run`` computes its checks; ``seconds`` is its usual cost.

@@ -14,6 +14,8 @@ from galerna import turbine as turbines
 from galerna.aero.bem.model import BladeElementMomentum
 from galerna.aero.bem.options import BemOptions
 from galerna.aero.bem.steady import UniformWind, steady_rotor
+from galerna.aero.vortex.model import VortexLattice
+from galerna.aero.vortex.options import VortexLatticeOptions
 from galerna.contract import Array, Inflow, LoadModel
 from galerna.kinematics import PrescribedMotion, PrescribedOperation
 from galerna.signals import Signal
@@ -24,7 +26,16 @@ DATA = Path(__file__).parent / "data"
 STEPS = 48  #: per turn
 AVATAR = (9.26, 0.66)  #: tip-speed ratio and thrust coefficient of the dissertation's table 4.3
 
-Options = BemOptions  #: of any aerodynamic model of the rotor
+Options = BemOptions | VortexLatticeOptions  #: of any aerodynamic model of the rotor
+
+#: The lattice as it comes, of a rotor without a tower
+LATTICE = VortexLatticeOptions(tower_influence=False)
+
+#: A smaller wake for long runs, with steps of 7.5 degrees: half the panels of the default
+BRISK = LATTICE.model_copy(
+    update={"wake_revolutions": 5.0, "wake_near_deg": 60.0, "wake_growth": 1.15,
+            "wake_step_deg": 7.5}
+)  # fmt: skip
 
 
 def table(name: str) -> list[dict[str, str]]:
@@ -71,18 +82,38 @@ def turning(
 ) -> dict[str, Array]:
     """Channels over the last of some turns of the rigid machine in uniform wind, and azimuth."""
     wind = UniformWind(np.array([wind_speed, 0.0, 0.0]))
-    model = load_model(turbine, wind, options, air_density)
+    dt = 60.0 / rotor_speed_rpm / steps
+    model = load_model(
+        turbine, wind, options, wind_speed, rotor_speed_rpm, dt, air_density=air_density
+    )
     operation = constant_operation(turbine, rotor_speed_rpm, pitch_deg, yaw_deg)
-    result = march(turbine, model, operation, 60.0 / rotor_speed_rpm / steps, turns * steps)
+    result = march(turbine, model, operation, dt, turns * steps)
     last = {name: values[-steps:] for name, values in result.items()}
     azimuth = np.arange(1, steps + 1) * 360.0 / steps
     return {**last, "azimuth_deg": azimuth, "radius": model.coordinates["radius"]}
 
 
+def dynamic_pressure_force(turbine: Turbine, wind_speed: float) -> float:
+    """What forces N are divided by for their coefficients: 1/2 rho V^2 pi R^2."""
+    return float(0.5 * AIR_DENSITY * wind_speed**2 * np.pi * turbine.rotor_radius**2)
+
+
 def load_model(
-    turbine: Turbine, inflow: Inflow, options: Options, air_density: float = AIR_DENSITY
+    turbine: Turbine,
+    inflow: Inflow,
+    options: Options,
+    wind_speed: float,
+    rotor_speed_rpm: float,
+    dt: float,
+    *,
+    air_density: float = AIR_DENSITY,
 ) -> LoadModel:
-    """The aerodynamic model that the options are those of."""
+    """The aerodynamic model that the options are those of; means and step size a wake."""
+    if isinstance(options, VortexLatticeOptions):
+        return VortexLattice(
+            turbine, inflow, rotor_speed=rotor_speed_rpm * RPM, wind_speed=wind_speed,
+            time_step=dt, air_density=air_density, options=options,
+        )  # fmt: skip
     return BladeElementMomentum(turbine, inflow, air_density=air_density, options=options)
 
 
