@@ -75,10 +75,9 @@ def bound_flow(
     separation: Separation | None = None,
 ) -> Flow:
     """The flow with a wake that is known."""
-    air = wind + wake_velocity
-    circulation = system.solve(_needed_velocity(surfaces, air))
+    circulation = system.solve(_needed_velocity(surfaces, wind + wake_velocity))
     if separation is not None:
-        circulation = separation.correct(surfaces, air, circulation, system.solve)
+        circulation = separation.correct(surfaces, wind, circulation, system.solve)
     return Flow(split_panels(circulation, surfaces), wind, wake_velocity)
 
 
@@ -93,15 +92,14 @@ def edge_flow(
 ) -> Flow:
     """The flow with a wake whose first panels depend on the circulation sought."""
     points, normals = control_points(surfaces), collocation_normals(surfaces)
-    air = wind + far_velocity
-    needed = _needed_velocity(surfaces, air)
+    needed = _needed_velocity(surfaces, wind + far_velocity)
     pairs = [e.normal_velocity(points[: len(normals)], normals, mirror) for e in edges]
     needed -= np.sum([known for known, _ in pairs], axis=0)
     shares = np.hstack([share for _, share in pairs])
     solve = partial(system.solve_with_strips, strips=shares) if shares.any() else system.solve
     solved = solve(needed)
     if separation is not None:
-        solved = separation.correct(surfaces, air, solved, solve)
+        solved = separation.correct(surfaces, wind, solved, solve)
     circulation = split_panels(solved, surfaces)
     near = [e.sheet(g[-1]) for e, g in zip(edges, circulation, strict=True)]
     near_velocity = InducedField(near, mirror=mirror).velocity(points)

@@ -15,6 +15,7 @@ from galerna.aero.vortex.field import InducedField
 from galerna.aero.vortex.lattice import Lattice
 from galerna.aero.vortex.mirror import MirrorPlane
 from galerna.aero.vortex.options import VortexLatticeOptions
+from galerna.aero.vortex.separation import blade_separation
 from galerna.aero.vortex.sheet import Sheet
 from galerna.aero.vortex.start import drifted_wake
 from galerna.aero.vortex.surface import Surface
@@ -92,6 +93,11 @@ class VortexLattice:
             _unsteady_options(self.options, self.lattice, air_density),
             wake_inflow=inflow if wake_inflow is None else wake_inflow,
             names=self.blades,
+            separation=(
+                blade_separation(self.lattice, turbine.blade, self.blades)
+                if self.options.decambering
+                else None
+            ),
         )
         self._probes = np.array(self.options.probes_m, dtype=float).reshape(-1, 3)
         self._trial: _Evaluation | None = None
@@ -246,7 +252,7 @@ class VortexLattice:
             frames.position, frames.rotation, frames.velocity, frames.angular_velocity, wind
         )
         strip_force = np.stack([load.strip_force for load in solution.loads])
-        polar = self._polar.loads(air, strip_force)
+        polar = self._polar.loads(air, strip_force, self._separated_angles())
         force, moment = np.zeros_like(frames.position), np.zeros_like(frames.position)
         if self.options.drag:
             force += polar.force
@@ -306,6 +312,13 @@ class VortexLattice:
         except ConvergenceError as error:
             self.notices.append(f"the run begins with the wake along the wind: {error.what}")
             return None
+
+    def _separated_angles(self) -> Array | None:
+        """Angles of attack (B,n) rad that decambering found; None without it."""
+        separation = self._flow.separation
+        if separation is None or separation.found is None:
+            return None
+        return separation.found.flow.angle_of_attack.reshape(len(self.blades), -1)
 
     def _see_tower(self, motion: Motion, time: float) -> None:
         if self._tower_wind is not None:

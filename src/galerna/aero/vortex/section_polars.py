@@ -8,7 +8,7 @@ rises with the angle of attack.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from math import pi
 from typing import NamedTuple
 
@@ -82,6 +82,10 @@ class SectionPolars:
         """The strips of several surfaces, one after the other, on the finest of their tables."""
         finest = max(part.table.shape[1] for part in parts)
         return cls.of_table(np.concatenate([_on_angles(part.table, finest) for part in parts]))
+
+    def part(self, first: int) -> SectionPolars:
+        """The strips from number ``first`` on."""
+        return SectionPolars(*(getattr(self, f.name)[first:] for f in fields(self)))
 
     def __len__(self) -> int:
         return len(self.table)

@@ -6,9 +6,15 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from galerna.aero.vortex.blades import BladeLattice
 from galerna.aero.vortex.decambering import Decambered, Decambering, Solve
+from galerna.aero.vortex.lattice import Lattice
+from galerna.aero.vortex.section_lift import SectionLift
+from galerna.aero.vortex.section_polars import SectionPolars
 from galerna.aero.vortex.surface import Surface, collocation_velocities
 from galerna.contract import Array
+from galerna.turbine.geometry import blade_frames
+from galerna.turbine.model import Blade
 
 
 class Separation:
@@ -24,16 +30,17 @@ class Separation:
         self._accepted: Array | None = None
 
     def correct(
-        self, surfaces: Sequence[Surface], air: Array, circulation: Array, solve: Solve
+        self, surfaces: Sequence[Surface], wind: Array, circulation: Array, solve: Solve
     ) -> Array:
         """Circulations (N,) m2/s in place of those of potential flow.
 
-        ``air`` (P,3) m/s begins with the velocities at the N collocation points; ``solve`` is
-        that of `Decambering.response`. Raises ConvergenceError that names the strip.
+        ``wind`` (P,3) m/s begins with that at the N collocation points; along the chord the
+        undisturbed velocity counts, as it does for drag. ``solve`` is that of
+        `Decambering.response`. Raises ConvergenceError that names the strip.
         """
         moving = collocation_velocities(surfaces)
         response = self.decambering.response(solve, surfaces)
-        relative = air[: len(moving)] - moving
+        relative = wind[: len(moving)] - moving
         self.found = self.decambering.solve(
             surfaces, circulation, relative, response, self._accepted
         )
@@ -52,3 +59,14 @@ class Separation:
         """Take ``state`` back."""
         self._accepted = np.array(state["wash"]) if "wash" in state else None
         self.found = None
+
+
+def blade_separation(lattice: BladeLattice, blade: Blade, names: Sequence[str]) -> Separation:
+    """For the equal blades of a rotor, called ``names``; InputError where they have no polars."""
+    polars = SectionPolars.of_blade(lattice.sections, names[0]).part(lattice.bare_strips)
+    chord = lattice.offsets[-1] - lattice.offsets[0]
+    tilt = np.arctan2(chord[:, 0], chord[:, 1])
+    corners = lattice.place(*blade_frames(blade, lattice.span))
+    sections = SectionLift.of_lattice(Lattice(corners), 0.5 * (tilt[1:] + tilt[:-1]))
+    count = len(names)
+    return Separation(Decambering([polars] * count, [sections] * count, names))

@@ -40,6 +40,7 @@ from galerna.aero.vortex.lattice import Lattice
 from galerna.aero.vortex.loads import SurfaceLoads
 from galerna.aero.vortex.mirror import MirrorPlane
 from galerna.aero.vortex.quasi_steady import steady_wake
+from galerna.aero.vortex.separation import Separation
 from galerna.aero.vortex.shedding import History, Shedding, edge_panels, shedding
 from galerna.aero.vortex.sheet import Sheet
 from galerna.aero.vortex.surface import Surface, collocation_velocities
@@ -152,7 +153,7 @@ class UnsteadyLattice:
 
     ``ages`` (K+1,) s are those of the rows of the wakes (see ``ages``); no step may be longer than
     ``ages[1]``. ``wake_inflow`` is the wind that moves the wakes, if another one; ``names`` are
-    what errors call the surfaces.
+    what errors call the surfaces; ``separation`` brings their sections' lift to polars.
     """
 
     def __init__(
@@ -163,11 +164,13 @@ class UnsteadyLattice:
         *,
         wake_inflow: Inflow | None = None,
         names: Sequence[str] = (),
+        separation: Separation | None = None,
     ) -> None:
         self.inflow, self.ages = inflow, np.asarray(ages, dtype=float)
         self.wake_inflow = inflow if wake_inflow is None else wake_inflow
         self.options = UnsteadyOptions() if options is None else options
         self.system = BoundSystem(mirror=self.options.mirror)
+        self.separation = separation
         courant_numbers(self.ages, 0.0)
         self._names = tuple(names)
         self._memory: _Memory | None = None
@@ -250,6 +253,8 @@ class UnsteadyLattice:
         if self._overflows(memory.elapsed + trial.dt):
             memory = self._sheds(memory, trial.wake, time)
         self.system.accept()
+        if self.separation is not None:
+            self.separation.accept()
         self._memory, self._trial = memory, None
 
     def wake(self) -> Wake:
@@ -272,6 +277,8 @@ class UnsteadyLattice:
         if self._memory is None:
             return {}
         bound = {f"system_{k}": v for k, v in self.system.state().items()}
+        if self.separation is not None:
+            bound |= self.separation.state()
         return _to_arrays(self._memory) | bound
 
     def restore(self, state: Mapping[str, np.ndarray]) -> None:
@@ -283,6 +290,8 @@ class UnsteadyLattice:
         self._name(len(surfaces))
         bound = {k.removeprefix("system_"): v for k, v in state.items() if k[:7] == "system_"}
         self.system.restore(bound, surfaces)
+        if self.separation is not None:
+            self.separation.restore(state)
 
     def _name(self, surfaces: int) -> None:
         if not self._names:
@@ -317,10 +326,13 @@ class UnsteadyLattice:
         points = control_points(surfaces)
         wind = wind_at(self.inflow, points, time, surfaces, self._names)
         if options.start == "steady" or options.quasi_steady:
-            flow = strip_flow(self.system, surfaces, wind, wake, options.core, options.mirror)
+            flow = strip_flow(
+                self.system, surfaces, wind, wake, options.core, options.mirror, self.separation
+            )
             wake = steady_wake(wake, [g[-1] for g in flow.circulation])
         else:
-            flow = bound_flow(self.system, surfaces, wind, np.zeros_like(points))
+            still = np.zeros_like(points)
+            flow = bound_flow(self.system, surfaces, wind, still, self.separation)
         return _Memory(
             wake,
             [s.lattice.corners.copy() for s in surfaces],
@@ -347,14 +359,17 @@ class UnsteadyLattice:
         points = control_points(surfaces)
         wind = wind_at(self.inflow, points, time, surfaces, self._names)
         if options.quasi_steady:
-            return strip_flow(self.system, surfaces, wind, trial.wake, options.core, options.mirror)
+            return strip_flow(
+                self.system, surfaces, wind, trial.wake, options.core, options.mirror,
+                self.separation,
+            )  # fmt: skip
         sheets = trial.wake.sheets(options.core, rows=slice(1))
         edges = [
             edge_panels(new, sheet, self.largest_step)
             for new, sheet in zip(trial.shed, sheets, strict=True)
         ]
         far = self._far_velocity(trial, points)
-        return edge_flow(self.system, surfaces, wind, far, edges, options.mirror)
+        return edge_flow(self.system, surfaces, wind, far, edges, options.mirror, self.separation)
 
     def _far_velocity(self, trial: _Trial, points: Array) -> Array:
         """Velocity (P,3) m/s by the wake but for its first panels, which move with the edges."""
