@@ -5,10 +5,15 @@ The names below load what they need when they are first used.
 
 from __future__ import annotations
 
+import os
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from galerna.kernel_cache import drop_stale_kernels
+
+# OpenBLAS's threads spin for 2^26 cycles before they sleep, which costs far more CPU time than the
+# small systems solved here; it reads this, 2^4 cycles, when NumPy and SciPy load it.
+os.environ.setdefault("OPENBLAS_THREAD_TIMEOUT", "4")
 
 if TYPE_CHECKING:
     from galerna.aero.bem.steady import performance_surface, power_curve, steady_rotor
