@@ -104,6 +104,17 @@ def test_points_near_the_rotor_and_far_from_it_have_the_error_asked_for(error: f
     assert percentile < error
 
 
+@pytest.mark.parametrize("error", [1e-2, 1e-3, 1e-4])
+def test_points_along_a_blade_have_the_error_asked_for(error: float) -> None:
+    """They lie on the lines of the wake's first vortices, whose cores are felt from afar."""
+    sheets = WAKES["uniform"]
+    chord = np.linspace(-0.7, 0.2, 10)[:, None, None] * np.array([1.0, 2.0, -1.0])
+    points = np.concatenate([sheet.vertices[0] + chord for sheet in sheets])
+    exact = direct_velocity(sheets, points)
+    _, percentile = relative(Treecode(sheets, error).velocity(points) - exact, exact)
+    assert percentile < error
+
+
 def test_the_far_field_converges_exponentially_with_its_order(
     summed: dict[str, np.ndarray],
 ) -> None:

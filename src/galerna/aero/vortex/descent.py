@@ -22,7 +22,7 @@ from galerna.aero.vortex.expansions import (
     shift_local,
 )
 from galerna.aero.vortex.segments import LANES as POINTS
-from galerna.aero.vortex.segments import Block, add_tile, make_block
+from galerna.aero.vortex.segments import Block, add_tile, make_block, whole_vectors
 from galerna.aero.vortex.simd import FASTMATH
 from galerna.contract import Array
 
@@ -193,16 +193,17 @@ def _add_far(k, patches, moments, centre, far, room, local):  # type: ignore[no-
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
 def _add_near(groups, group, tiles, near, block):  # type: ignore[no-untyped-def]
     """Sum the near patches at a group's points, which count from its centre."""
-    centre = groups.centre[group]
-    for n in range(POINTS):
-        point = min(groups.first[group] + n, groups.last[group] - 1)
+    centre, count = groups.centre[group], groups.last[group] - groups.first[group]
+    lanes = whole_vectors(count)
+    for n in range(lanes):
+        point = groups.first[group] + min(n, count - 1)
         for i in range(3):
             block.points[i * POINTS + n] = groups.points[point, i] - centre[i]
     block.velocity[:] = 0.0
     for patch in near:
         rows, columns = tiles.shape[patch]
         first = tiles.first[patch]
-        add_tile(tiles.table, first, columns, rows, columns, (True, True), centre, block)
+        add_tile(tiles.table, first, columns, rows, columns, (True, True), centre, lanes, block)
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
