@@ -15,7 +15,9 @@ from galerna.aero.vortex.separation import Separation, blade_separation
 from galerna.aero.vortex.surface import Surface
 from galerna.aero.vortex.unsteady import UnsteadyLattice, UnsteadyOptions
 from galerna.aero.vortex.wings import trapezoidal_wing
+from galerna.case import load
 from galerna.contract import Array
+from galerna.machine import build_machine
 from galerna.turbine.model import Polar
 
 ANGLE = np.radians(np.linspace(-180.0, 180.0, 1441))
@@ -109,3 +111,42 @@ def test_the_part_of_polars_is_theirs() -> None:
     polars = SectionPolars.of_polar(POLAR, 4)
     assert len(polars.part(1)) == 3
     assert np.array_equal(polars.part(1).branch, polars.branch[1:])
+
+
+def deep_stall(aerodynamics: dict[str, object]) -> dict[str, float]:
+    """Thrust and torque of the NREL 5 MW at 25 m/s, where it is stalled at 0 deg of pitch."""
+    made = build_machine(
+        load(
+            {
+                "galerna": 1,
+                "turbine": "nrel5mw",
+                "duration_s": 10.0,
+                "time_step_s": 0.1,
+                "inflow": {"wind_speed_m_s": 25.0},
+                "operation": {"rotor_speed_rpm": 12.1, "pitch_deg": 0.0},
+                "tower_and_nacelle_drag": False,
+                "aerodynamics": {"tower_influence": False, **aerodynamics},
+            }
+        )
+    )
+    for _ in range(6):
+        made.simulation.advance()
+    record = made.simulation.record()
+    return {name: float(record[name]) for name in ("rotor_thrust", "rotor_torque")}
+
+
+def test_a_stalled_rotor_has_nearly_the_loads_of_blade_element_momentum() -> None:
+    """Where induction is small both rest on the polars; without decambering thrust is far off."""
+    lattice = {
+        "model": "vortex_lattice",
+        "spanwise_panels": 12,
+        "chordwise_panels": 3,
+        "wake_length_diameters": 1.5,
+        "wake_step_deg": 10,
+        "wake": "prescribed",
+    }
+    momentum = deep_stall({})
+    stalled, attached = deep_stall({**lattice, "decambering": True}), deep_stall(lattice)
+    for name, value in momentum.items():
+        assert stalled[name] == pytest.approx(value, rel=0.1)
+        assert attached[name] > 1.4 * value
