@@ -67,6 +67,15 @@ def test_what_lies_within_the_limits_is_not_in_doubt(changes):
     assert doubts(**changes) == []
 
 
+def test_a_slow_rotor_is_in_doubt_by_the_vortex_lattice_alone():
+    slow = {"operation": operation(rotor_speed_rpm=3.0)}
+    lattice = {"model": "vortex_lattice", "spanwise_panels": 4, "chordwise_panels": 1}
+    assert doubts(**slow) == []
+    (doubt,) = doubts(**slow, aerodynamics=lattice)
+    assert "tips move at 19.77 m/s in a wind of 8 m/s: most sections will stall" in doubt
+    assert doubts(aerodynamics=lattice) == []
+
+
 def test_the_whole_of_a_series_is_looked_at():
     series = {"time_s": [0.0, 1.0], "values": [9.0, 25.0]}
     assert "25 rpm" in doubts(operation=operation(rotor_speed_rpm=series))[0]

@@ -20,6 +20,7 @@ EXPECTED = {
     "turbulent": ("rotor_power", 2e6, 8e6),
     "yawed": ("rotor_power", 1.0e6, 1.8e6),
     "gust": ("rotor_power", 12e6, 20e6),
+    "free_wake": ("rotor_power", 1.0e6, 4.5e6),
 }
 
 
@@ -30,6 +31,9 @@ def test_a_built_in_case_runs(name):
     turbulence = values["inflow"].get("turbulence")
     if turbulence:
         turbulence.update(points_across=8, time_step_s=0.4)
+    values.get("aerodynamics", {}).pop(
+        "flow_output", None
+    )  # which a result in memory has no place for
     result = galerna.run(values)
     channel, low, high = EXPECTED[name]
     assert low < float(result[channel].mean()) < high

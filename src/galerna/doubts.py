@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from galerna.aero.vortex.options import VortexLatticeOptions
 from galerna.case import Case
 from galerna.kinematics import PrescribedOperation
 from galerna.turbine.model import Turbine
@@ -14,6 +15,7 @@ from galerna.units import DEG, RPM
 LARGEST_TIP_SPEED = 150.0  #: m/s
 LARGEST_OVERSPEED = 1.5  #: times the rated tip speed
 PITCH_RANGE = (-10.0, 100.0)  #: deg
+LOWEST_ATTACHED = 3.0  #: tip-speed ratio
 LARGEST_TURN = 10.0  #: deg of azimuth in a time step
 
 
@@ -31,6 +33,8 @@ def doubts(
             f"duration_s, {case.duration_s:g} s, is not a whole number of steps of "
             f"{case.time_step_s:g} s: the run ends at {round(steps) * case.time_step_s:g} s"
         )
+    if isinstance(case.aerodynamics, VortexLatticeOptions) and not case.aerodynamics.decambering:
+        yield from _about_attached_flow(turbine, operation.rotor_speed.value, mean_wind)
     if turbine.platform is not None:
         yield "the platform is held still: no hydrodynamics yet"
 
@@ -52,6 +56,15 @@ def _about_speed(turbine: Turbine, speeds: np.ndarray, time_step: float) -> Iter
         yield (
             f"the rotor turns {turn:.4g} deg in a time step of {time_step:g} s: "
             f"above {LARGEST_TURN:g} deg the loads over a turn are coarse"
+        )
+
+
+def _about_attached_flow(turbine: Turbine, speeds: np.ndarray, mean_wind: float) -> Iterator[str]:
+    slowest = float(abs(speeds).min()) * turbine.rotor_radius
+    if slowest < LOWEST_ATTACHED * mean_wind:
+        yield (
+            f"the blade tips move at {slowest:.4g} m/s in a wind of {mean_wind:.4g} m/s: most "
+            "sections will stall, and the vortex lattice lifts on unless decambering is true"
         )
 
 
