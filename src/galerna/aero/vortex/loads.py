@@ -124,7 +124,7 @@ def _shares_of_ends(lattice: Lattice) -> tuple[Array, Array]:
 
 
 def _joukowski(strength: Array, velocity: Array, segment: Array, density: float) -> Array:
-    """rho G u x l, eq. (6), in the shape of the segments."""
+    """rho G v x l, eq. (5), in the shape of the segments."""
     return density * strength[..., None] * np.cross(velocity.reshape(segment.shape), segment)
 
 
