@@ -131,6 +131,20 @@ def test_strips_of_a_wake_are_solved_as_if_they_stood_in_the_matrix(surfaces, on
     assert whole @ circulation == pytest.approx(onset, abs=1e-11)
 
 
+def test_strips_behind_deformed_surfaces_are_solved_in_the_same_iteration(surfaces, onset) -> None:
+    system = BoundSystem()
+    system.place(surfaces)
+    deformed = bent(surfaces, 0.005)
+    system.place(deformed)
+    strips = -0.3 * system.influence()[:, system.trailing_rings]
+    circulation = system.solve_with_strips(onset, strips)
+    matrix = system.influence()
+    matrix[:, system.trailing_rings] += strips
+    assert matrix @ circulation == pytest.approx(onset, abs=1e-10 * np.abs(onset).max())
+    assert system.factorisations == 1
+    assert 0 < system.iterations <= 12
+
+
 def test_a_sector_solves_for_all_of_a_symmetric_rotor() -> None:
     blade = trapezoidal_wing(4.0, 1.0, 2, 4, angle_of_attack=0.2) + np.array([0.0, 3.0, 0.0])
     symmetry = RotationalSymmetry(3, np.array([1.0, 0.0, 0.0]), np.array([0.1, 0.2, 0.3]))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -83,14 +83,7 @@ class BoundSystem:
 
         Raises ConvergenceError for a velocity that is not finite.
         """
-        if not np.isfinite(normal_velocity).all():
-            raise ConvergenceError("vortex lattice", self._place_of_fault(normal_velocity))
-        self.iterations = 0
-        if self._matrix is None:
-            return lu_solve(self._lu, normal_velocity, check_finite=False)
-        columns = normal_velocity.reshape(len(normal_velocity), -1)
-        solved = np.stack([self._solve_deformed(b) for b in columns.T], axis=1)
-        return solved.reshape(normal_velocity.shape)
+        return self._solved(normal_velocity, None)
 
     def solve_with_strips(self, normal_velocity: Array, strips: Array) -> Array:
         """Circulations (N,) or (N,k) of a flow whose wake strips carry the trailing circulation.
@@ -99,12 +92,39 @@ class BoundSystem:
         n trailing circulations are found first, from the Schur complement of the bound rings,
         whose factorisation thus serves any wake.
         """
+        return self._solved(normal_velocity, strips)
+
+    def _solved(self, normal_velocity: Array, strips: Array | None) -> Array:
+        if not np.isfinite(normal_velocity).all():
+            raise ConvergenceError("vortex lattice", self._place_of_fault(normal_velocity))
+        self.iterations = 0
+        inverse = self._factored_inverse(strips)
+        if self._matrix is None:
+            return inverse(normal_velocity)
+        columns = normal_velocity.reshape(len(normal_velocity), -1).T
+        solved = []
+        for column in columns:
+            solution = self._solve_deformed(column, inverse, strips)
+            if solution is None:
+                self._factorise(self._matrix)
+                return self._factored_inverse(strips)(normal_velocity)
+            solved.append(solution)
+        return np.stack(solved, axis=1).reshape(normal_velocity.shape)
+
+    def _factored_inverse(self, strips: Array | None) -> Callable[[Array], Array]:
+        """The inverse of the factorised rings, or of those rings with the strips behind them."""
+        lu = self._lu
+        if strips is None:
+            return lambda right: lu_solve(lu, right, check_finite=False)
         trailing = self.trailing_rings
-        both = self.solve(np.column_stack([normal_velocity, strips]))
-        alone, response = both[:, : -len(trailing)], both[:, -len(trailing) :]
-        schur = np.eye(len(trailing)) + response[trailing]
-        circulation = alone - response @ np.linalg.solve(schur, alone[trailing])
-        return circulation.reshape(normal_velocity.shape)
+        response = lu_solve(lu, strips, check_finite=False)
+        schur = lu_factor(np.eye(len(trailing)) + response[trailing])
+
+        def inverse(right: Array) -> Array:
+            alone = lu_solve(lu, right, check_finite=False)
+            return alone - response @ lu_solve(schur, alone[trailing])
+
+        return inverse
 
     @property
     def trailing_rings(self) -> Array:
@@ -158,29 +178,29 @@ class BoundSystem:
         self._matrix = None
         self.factorisations += 1
 
-    def _solve_deformed(self, right: Array) -> Array:
-        matrix = self._matrix
-        if matrix is None:  # factorised for an earlier column
-            return lu_solve(self._lu, right, check_finite=False)
-        count = 0
+    def _solve_deformed(
+        self, right: Array, inverse: Callable[[Array], Array], strips: Array | None
+    ) -> Array | None:
+        """GMRES for one right side (N,), preconditioned; None where it takes too long."""
+        matrix, count = self._matrix, 0
+        assert matrix is not None
+        trailing = self.trailing_rings
+
+        def product(x: Array) -> Array:
+            return matrix @ x if strips is None else matrix @ x + strips @ x[trailing]
 
         def counted(_residual: float) -> None:
             nonlocal count
             count += 1
 
-        preconditioner = LinearOperator(
-            matrix.shape, lambda x: lu_solve(self._lu, x, check_finite=False), dtype=float
-        )
-        start = lu_solve(self._lu, right, check_finite=False)
         solution, unfinished = gmres(
-            matrix, right, start, rtol=GMRES_TOLERANCE, restart=GMRES_ITERATIONS, maxiter=1,
-            M=preconditioner, callback=counted, callback_type="pr_norm",
+            LinearOperator(matrix.shape, product, dtype=float), right, inverse(right),
+            rtol=GMRES_TOLERANCE, restart=GMRES_ITERATIONS, maxiter=1,
+            M=LinearOperator(matrix.shape, inverse, dtype=float),
+            callback=counted, callback_type="pr_norm",
         )  # fmt: skip
         self.iterations = max(self.iterations, count)
-        if unfinished:
-            self._factorise(matrix)
-            return lu_solve(self._lu, right, check_finite=False)
-        return solution
+        return None if unfinished else solution
 
     def _moved_rigidly(self, reference: Array) -> bool:
         """Whether the surfaces are the reference moved as a whole (Kabsch 1976)."""
