@@ -231,6 +231,14 @@ _BHAGWAT = Reference(
     "American Helicopter Society 58th Annual Forum, Montreal",
     kind="techreport",
 )
+_GREENGARD = Reference(
+    "GreengardRokhlin1987",
+    "L. Greengard, V. Rokhlin",
+    1987,
+    "A fast algorithm for particle simulations",
+    "Journal of Computational Physics 73(2), 325-348",
+    "10.1016/0021-9991(87)90140-9",
+)
 _MUKHERJEE = Reference(
     "MukherjeeGopalarathnam2006",
     "R. Mukherjee, A. Gopalarathnam",
@@ -306,7 +314,9 @@ AERODYNAMICS: dict[str, dict[str, dict[object, tuple[Reference, ...]]]] = {
         "rotational_augmentation": {"snel": (_SNEL,), "du_selig": (_DU_SELIG,)},
     },
     "vortex_lattice": {
-        "model": {"vortex_lattice": (_KATZ_PLOTKIN, _SIMPSON, _FILTER, _VATISTAS, _BHAGWAT)},
+        "model": {
+            "vortex_lattice": (_KATZ_PLOTKIN, _SIMPSON, _FILTER, _VATISTAS, _BHAGWAT, _GREENGARD)
+        },
         "decambering": {True: (_MUKHERJEE,)},
         "tower_influence": {True: (_POWLES,)},
     },

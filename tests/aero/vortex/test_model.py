@@ -224,6 +224,7 @@ def test_turbulence_moves_the_wake_by_choice(wake_turbulence):
         {"ground": True},
         {"core_radius": 0.0, "core_growth": 0.0, "wake": "free"},
         {"tree_error": 0.0, "precision": "double", "wake": "free"},
+        {"decambering": True},
         {"camber": "polar", "tower_influence": True},
         {"spanwise_panels": [0.2, 0.5, 0.8, 1.0], "chordwise_panels": [0.0, 0.3, 1.0]},
     ],
