@@ -12,7 +12,7 @@ from math import sqrt
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 from numpy.typing import NDArray
 
 from galerna.aero.vortex.sheet import Sheet
@@ -152,12 +152,12 @@ def _distance(x, i, j):  # type: ignore[no-untyped-def]
     return sqrt((x[i, 0] - x[j, 0]) ** 2 + (x[i, 1] - x[j, 1]) ** 2 + (x[i, 2] - x[j, 2]) ** 2)
 
 
-@njit(cache=True, parallel=True, error_model="numpy", fastmath=FASTMATH)
+@njit(cache=True, error_model="numpy", fastmath=FASTMATH)
 def _fit(panels, limits, more):  # type: ignore[no-untyped-def]
     """Balls about the boxes of all parts, ``more`` vertices than limits, and thickest cores."""
     nodes = len(limits)
     centre, radius, core = np.empty((nodes, 3)), np.empty(nodes), np.empty(nodes)
-    for node in prange(nodes):
+    for node in range(nodes):
         radius[node], core[node] = _fit_one(panels, limits[node], more, centre[node])
     return centre, radius, core
 

@@ -22,7 +22,7 @@ from galerna.aero.vortex.expansions import (
     shift_local,
 )
 from galerna.aero.vortex.segments import LANES as POINTS
-from galerna.aero.vortex.segments import Block, add_tile, make_block, whole_vectors
+from galerna.aero.vortex.segments import add_tile, make_block, whole_vectors
 from galerna.aero.vortex.simd import FASTMATH
 from galerna.contract import Array
 
@@ -55,7 +55,6 @@ class _Room(NamedTuple):
     derivatives: Array  # (total+1,LANES)
     polynomials: Array  # (total+1,1)
     local: Array  # (_DEEPEST,total+1): series of the groups that hold this one
-    block: Block  # of a smallest group's points
 
 
 @njit(cache=True, parallel=True, error_model="numpy", fastmath=FASTMATH)
@@ -72,7 +71,7 @@ def add_far_and_near(k, rule, patches, tiles, moments, groups, tasks, like, velo
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
 def _descend(k, rule, patches, tiles, moments, groups, task, like, velocity):  # type: ignore[no-untyped-def]
     path = _path_to(groups.parent, task)
-    room = _make_room(k, rule, patches, like)
+    room, block = _make_room(k, patches), make_block(rule.leaf_size + 1, like)
     ends = np.zeros(_DEEPEST + 1, np.int64)  # of what each group of the path left waiting
     while ends[0] < len(patches.parent) and patches.parent[ends[0]] < 0:
         room.waiting[ends[0]] = ends[0]
@@ -94,8 +93,8 @@ def _descend(k, rule, patches, tiles, moments, groups, task, like, velocity):  #
                 todo[count], levels[count] = groups.child[group] + part, level + 1
                 count += 1
         else:
-            _add_near(groups, group, tiles, room.near[:near], room.block)
-            _write(k, groups, group, room.local[level], room.block, velocity)
+            _add_near(groups, group, tiles, room.near[:near], block)
+            _write(k, groups, group, room.local[level], block, velocity)
 
 
 @njit(cache=True)
@@ -111,7 +110,7 @@ def _path_to(parent, task):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _make_room(k, rule, patches, like):  # type: ignore[no-untyped-def]
+def _make_room(k, patches):  # type: ignore[no-untyped-def]
     total, count = len(k.exponents) + 1, len(patches.child)
     return _Room(
         np.empty(count, np.int64),
@@ -123,7 +122,6 @@ def _make_room(k, rule, patches, like):  # type: ignore[no-untyped-def]
         np.empty((total, LANES)),
         np.empty((total, 1)),
         np.zeros((_DEEPEST, total)),
-        make_block(rule.leaf_size + 1, like),
     )
 
 

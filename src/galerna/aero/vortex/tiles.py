@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit, prange
+from numba import njit
 
 from galerna.aero.vortex.clusters import Integers, Panels, Patches
 from galerna.aero.vortex.segments import NUMBERS, set_segment
@@ -39,9 +39,9 @@ def make_tiles(panels: Panels, patches: Patches) -> Tiles:
     return tiles
 
 
-@njit(cache=True, parallel=True, error_model="numpy", fastmath=FASTMATH)
+@njit(cache=True, error_model="numpy", fastmath=FASTMATH)
 def _fill(tiles, panels, patches):  # type: ignore[no-untyped-def]
-    for node in prange(len(patches.child)):
+    for node in range(len(patches.child)):
         if patches.child[node] == 0:
             _fill_one(tiles.table, tiles.first[node], panels, patches.limits[node])
 
