@@ -1,4 +1,4 @@
-"""The treecode's error is the one asked for, whatever the wake, and its cost nearly linear."""
+"""The error of the treecode is the one asked for, whatever the wake and the points."""
 
 from __future__ import annotations
 
