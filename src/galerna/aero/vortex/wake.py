@@ -26,6 +26,7 @@ import numpy as np
 from numba import njit
 
 from galerna.aero.vortex.cores import VortexCore
+from galerna.aero.vortex.helix import carried
 from galerna.aero.vortex.sheet import Sheet
 from galerna.contract import Array
 from galerna.errors import InputError
@@ -134,31 +135,27 @@ class Wake:
         ]
 
 
-def straight_wake(
-    ages: Array, edges: Sequence[Array], drift: Sequence[Array], centre: Array | None = None
-) -> Wake:
+def straight_wake(ages: Array, edges: Sequence[Array], drift: Sequence[Array]) -> Wake:
     """A wake without circulation behind trailing edges (n+1,3) m, which drift away from it.
 
     ``drift`` (n+1,3) m/s is the wind less the velocity of the edge, for each surface.
     """
-    vertices = tuple(e + ages[:, None, None] * u for e, u in zip(edges, drift, strict=True))
-    circulation = tuple(np.zeros((len(ages) - 1, len(e) - 1)) for e in edges)
-    return Wake(np.asarray(ages, float), vertices, circulation, centre)
+    vertices = (carried(ages, edge, away) for edge, away in zip(edges, drift, strict=True))
+    return Wake(np.asarray(ages, float), tuple(vertices), _nothing(ages, edges))
 
 
 def helical_wake(ages: Array, edges: Sequence[Array], axis: RotorAxis, wind: Array) -> Wake:
     """A wake without circulation that trailing edges (n+1,3) m leave in turning about an axis.
 
-    The ``wind`` (3,) m/s carries it away: a row of age a is the edge turned back by a times the
-    rotor's speed, and blown on.
+    The ``wind`` (3,) m/s carries it away.
     """
-    vertices = tuple(np.empty((len(ages), len(e), 3)) for e in edges)
-    for x, edge in zip(vertices, edges, strict=True):
-        for k, age in enumerate(ages):
-            back = _turned(edge - axis.origin, axis.direction, -axis.speed * age)
-            x[k] = axis.origin + back + age * wind
-    circulation = tuple(np.zeros((len(ages) - 1, len(e) - 1)) for e in edges)
-    return Wake(np.asarray(ages, float), vertices, circulation, axis.origin + ages[:, None] * wind)
+    vertices = (carried(ages, edge, wind, axis) for edge in edges)
+    centre = axis.origin + ages[:, None] * wind
+    return Wake(np.asarray(ages, float), tuple(vertices), _nothing(ages, edges), centre)
+
+
+def _nothing(ages: Array, edges: Sequence[Array]) -> tuple[Array, ...]:
+    return tuple(np.zeros((len(ages) - 1, len(edge) - 1)) for edge in edges)
 
 
 def courant_numbers(ages: Array, elapsed: float) -> Array:
@@ -199,12 +196,6 @@ def _row_cores(
             break
         radius[k] = THINNEST * way
     return radius[:, None]
-
-
-def _turned(arm: Array, direction: Array, angle: float) -> Array:
-    """Vectors (...,3) turned by an angle rad about a unit direction (3,)."""
-    along = (arm @ direction)[..., None] * direction
-    return along + np.cos(angle) * (arm - along) + np.sin(angle) * np.cross(direction, arm)
 
 
 @njit(cache=True, error_model="numpy")

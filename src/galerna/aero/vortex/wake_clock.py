@@ -1,0 +1,141 @@
+"""The wake's own clock: laid out, moved, and shed anew when its first panel is full."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from galerna.aero.vortex.convection import (
+    Convection,
+    corrected,
+    earlier,
+    require_calm,
+)
+from galerna.aero.vortex.field import InducedField
+from galerna.aero.vortex.lattice import Lattice
+from galerna.aero.vortex.memory import Memory
+from galerna.aero.vortex.quasi_steady import steady_wake
+from galerna.aero.vortex.sheet import Sheet
+from galerna.aero.vortex.surface import Surface
+from galerna.aero.vortex.unsteady_options import UnsteadyOptions
+from galerna.aero.vortex.wake import (
+    STEP_TOLERANCE,
+    RotorAxis,
+    Wake,
+    courant_numbers,
+    helical_wake,
+    straight_wake,
+)
+from galerna.contract import Array, Inflow
+
+
+class WakeClock:
+    """Wakes whose rows have ``ages`` (K+1,) s, moved by the ``wind`` and, if free, by all vortices.
+
+    What it knows of a wake is in the `Memory` that it is given. ``names`` of the surfaces that
+    shed are for errors.
+    """
+
+    def __init__(
+        self, wind: Inflow, ages: Array, options: UnsteadyOptions, names: Sequence[str] = ()
+    ) -> None:
+        self.wind, self.options, self.names = wind, options, tuple(names)
+        self.ages = np.asarray(ages, dtype=float)
+        courant_numbers(self.ages, 0.0)
+
+    @property
+    def step(self) -> float:
+        """Time s in which a row is shed: the age of the first panel."""
+        return float(self.ages[1])
+
+    def name(self, surfaces: int) -> None:
+        """Call so many surfaces by their numbers, where they have no names."""
+        if not self.names:
+            self.names = tuple(f"surface {i + 1}" for i in range(surfaces))
+
+    def overflows(self, elapsed: float) -> bool:
+        """Whether a wake shed so long ago has to shed its next row before."""
+        return elapsed > self.step * (1.0 + STEP_TOLERANCE)
+
+    def first_wake(self, time: float, surfaces: Sequence[Surface], axis: RotorAxis | None) -> Wake:
+        """A wake without circulation, as surfaces that never changed their motion left it."""
+        edges = [s.lattice.vertices[-1] for s in surfaces]
+        if axis is not None:
+            blown = self.wind.velocity(np.concatenate(edges), time)
+            return helical_wake(self.ages, edges, axis, blown.mean(axis=0))
+        moving = [Lattice(s.velocity, s.lattice.rings).vertices[-1] for s in surfaces]
+        drift = [self.wind.velocity(e, time) - v for e, v in zip(edges, moving, strict=True)]
+        return straight_wake(self.ages, edges, drift)
+
+    def field(self, sheets: Sequence[Sheet], precision: str = "double") -> InducedField:
+        """The velocity field of sheets, summed as the options say."""
+        options = self.options
+        return InducedField(
+            sheets, error=options.tree_error, precision=precision, mirror=options.mirror
+        )
+
+    def sheets(self, memory: Memory, wake: Wake, edge: float) -> list[Sheet]:
+        """Wakes and bound vortices, which have a core of radius ``edge`` m."""
+        bound = [
+            Sheet(Lattice(c, self.options.rings).vertices, g, edge)
+            for c, g in zip(memory.corners, memory.circulation, strict=True)
+        ]
+        return [*wake.sheets(self.options.core, edge=edge), *bound]
+
+    def _fluid_velocity(self, memory: Memory, wake: Wake, time: float) -> tuple[Array, ...]:
+        """Velocity (K+1,n+1,3) m/s that moves the vertices of a wake."""
+        everywhere = np.concatenate([x.reshape(-1, 3) for x in wake.vertices])
+        wind = np.asarray(self.wind.velocity(everywhere, time), dtype=float)
+        ends = np.cumsum([x.size // 3 for x in wake.vertices])[:-1]
+        velocity = [
+            w.reshape(x.shape) for w, x in zip(np.split(wind, ends), wake.vertices, strict=True)
+        ]
+        if self.options.free:
+            edge = 0.0 if self.options.core is None else self.options.core.initial_radius
+            field = self.field(self.sheets(memory, wake, edge), self.options.wake_precision)
+            induced = field.vertex_velocities(range(len(wake.vertices)))
+            require_calm(wake, induced, memory.speed, time, self.names)
+            velocity = [u + v for u, v in zip(velocity, induced, strict=True)]
+        return tuple(velocity)
+
+    def convection(self, memory: Memory, time: float, axis: RotorAxis | None) -> Convection:
+        """How the wake just shed is going to move."""
+        velocity = self._fluid_velocity(memory, memory.wake, time)
+        if self.options.scheme != "adams_bashforth" or memory.earlier is None:
+            return Convection(velocity, None, axis)
+        return Convection(velocity, memory.earlier.acceleration(velocity), axis)
+
+    def advanced(self, memory: Memory, elapsed: float, shed: Sequence[Array]) -> Wake:
+        """The wake ``elapsed`` s after its shedding, with what the edges ``shed`` (n,) in all."""
+        convection = memory.convection
+        assert convection is not None
+        mean = [i / elapsed for i in shed]
+        return memory.wake.advanced(convection.mean(elapsed), elapsed, mean, convection.axis)
+
+    def wake_at(self, memory: Memory) -> Wake:
+        """The wake at the instant of a memory, ``elapsed`` after the last shedding."""
+        if memory.elapsed == 0.0:
+            return memory.wake
+        wake = self.advanced(memory, memory.elapsed, memory.shed)
+        wake.attach([Lattice(c, self.options.rings).vertices[-1] for c in memory.corners])
+        return wake
+
+    def shed(self, memory: Memory, wake: Wake, time: float) -> Memory:
+        """The memory after it has shed ``wake``, the one at its instant."""
+        convection, elapsed = memory.convection, memory.elapsed
+        assert convection is not None
+        fraction = courant_numbers(self.ages, elapsed)
+        if self.options.scheme == "heun":
+            end = self._fluid_velocity(memory, wake, time)
+            mean = corrected(convection.velocity, end, fraction)
+            better = replace(memory, convection=Convection(mean, None, convection.axis))
+            wake = self.wake_at(better)
+        if self.options.quasi_steady:
+            wake = steady_wake(wake, [g[-1] for g in memory.circulation])
+        past = None
+        if self.options.scheme == "adams_bashforth":
+            past = earlier(convection.velocity, fraction, elapsed)
+        nothing = [np.zeros_like(i) for i in memory.shed]
+        return replace(memory, wake=wake, elapsed=0.0, shed=nothing, convection=None, earlier=past)
