@@ -15,6 +15,9 @@ MODULES = (
     "structure",
     "vibration",
     "multibody",
+    "lattice_plates",
+    "lattice_wings",
+    "spanwise",
     "lattice_sharpy",
 )
 
