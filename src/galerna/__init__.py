@@ -11,9 +11,11 @@ from typing import TYPE_CHECKING, Any
 
 from galerna.kernel_cache import drop_stale_kernels
 
-# OpenBLAS's threads spin for 2^26 cycles before they sleep, which costs far more CPU time than the
-# small systems solved here; it reads this, 2^4 cycles, when NumPy and SciPy load it.
+# Threads that wait for their next work by spinning cost more CPU time than the short kernels and
+# small systems here. OpenBLAS reads its setting (2^4 cycles, not 2^26) when NumPy loads it,
+# OpenMP when the first parallel kernel runs.
 os.environ.setdefault("OPENBLAS_THREAD_TIMEOUT", "4")
+os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
 if TYPE_CHECKING:
     from galerna.aero.bem.steady import performance_surface, power_curve, steady_rotor

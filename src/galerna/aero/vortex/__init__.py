@@ -5,13 +5,8 @@ The names below load what they need when they are first used.
 
 from __future__ import annotations
 
-import os
 from importlib import import_module
 from typing import Any
-
-# OpenMP's threads wait for their next work by spinning, which costs more CPU time than a short
-# kernel does; it reads this when the first parallel kernel runs.
-os.environ.setdefault("OMP_WAIT_POLICY", "passive")
 
 #: public names by the module where each lives
 _MODULES = {
