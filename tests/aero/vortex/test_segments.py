@@ -72,7 +72,21 @@ def test_single_precision_is_good_to_a_part_in_100_000_anywhere(points: np.ndarr
     assert np.linalg.norm(error) > 0.0
 
 
-@pytest.mark.parametrize("precision", ["double", "single"])
+@pytest.mark.parametrize("core_radius", [0.0, 0.3])
+def test_mixed_precision_is_good_to_a_part_in_a_million(
+    points: np.ndarray, core_radius: float
+) -> None:
+    sheet = helix(core_radius)
+    x = sheet.vertices
+    points = np.concatenate([points, x.reshape(-1, 3), 0.5 * (x[1:] + x[:-1]).reshape(-1, 3)])
+    double = direct_velocity([sheet], points)
+    error = np.linalg.norm(direct_velocity([sheet], points, "mixed") - double, axis=1)
+    size = np.sqrt(np.mean(np.sum(double**2, axis=1)))
+    assert error.max() < 1e-6 * size
+    assert error.max() > 0.0
+
+
+@pytest.mark.parametrize("precision", ["double", "mixed", "single"])
 @pytest.mark.parametrize("core_radius", [0.0, 0.2])
 def test_nothing_is_infinite_on_vertices_segments_and_their_lines(
     precision: str, core_radius: float

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from math import sqrt
 
 import numpy as np
 from numba import njit, prange
@@ -19,20 +20,23 @@ from galerna.aero.vortex.segments import (
 from galerna.aero.vortex.sheet import Sheet
 from galerna.aero.vortex.simd import FASTMATH
 from galerna.contract import Array
-from galerna.errors import InputError
+from galerna.errors import InputError, did_you_mean
 
 _ROWS = 64  # of a tile: sums in single precision are no longer than this
 _REACH = 1e4  # m: what single precision can hold, see `segments`
+#: precisions by how many lengths of segments around a block of points are summed in double
+_NEAR = {"single": -np.inf, "mixed": 2.0, "double": np.inf}
 
 
 def direct_velocity(sheets: Sequence[Sheet], points: Array, precision: str = "double") -> Array:
     """Velocity (...,3) m/s that sheets induce at points (...,3) m, eq. (2) of `segments`.
 
-    ``precision`` "single" is good to about 1e-5 of the velocity; it is meant for vortices with
-    cores, and sheets that reach further than 10 km are summed in double precision all the same.
+    ``precision`` "single" is good to about 1e-5 of the velocity and meant for vortices with
+    cores; "mixed" has double precision for what is near, and is good to 1e-6. Sheets that reach
+    further than 10 km are summed in double precision all the same.
     """
-    if precision not in ("single", "double"):
-        raise InputError("precision", f"{precision!r} is neither 'single' nor 'double'")
+    if precision not in _NEAR:
+        raise InputError("precision", f"{precision!r}", did_you_mean(precision, _NEAR))
     points = np.asarray(points, dtype=float)
     flat = np.ascontiguousarray(points.reshape(-1, 3))
     velocity = np.zeros_like(flat)
@@ -41,8 +45,8 @@ def direct_velocity(sheets: Sequence[Sheet], points: Array, precision: str = "do
         low = high = flat[0]
         for x in (flat, table[:, :3]):
             low, high = np.minimum(low, x.min(axis=0)), np.maximum(high, x.max(axis=0))
-        single = precision == "single" and float(np.max(high - low)) < _REACH
-        _sum(table, shapes, flat, velocity, np.zeros(1, np.float32 if single else np.float64))
+        far = float(np.max(high - low)) > _REACH
+        _sum(table, shapes, flat, velocity, np.inf if far else _NEAR[precision])
     return velocity.reshape(points.shape)
 
 
@@ -87,18 +91,22 @@ def _fill(table, first, vertices, circulation, core):  # type: ignore[no-untyped
 
 
 @njit(cache=True, parallel=True, error_model="numpy", fastmath=FASTMATH)
-def _sum(table, shapes, points, velocity, like):  # type: ignore[no-untyped-def]
+def _sum(table, shapes, points, velocity, near):  # type: ignore[no-untyped-def]
     for number in prange((len(points) + LANES - 1) // LANES):
         first = number * LANES
         last = min(first + LANES, len(points))
-        _sum_at(table, shapes, points[first:last], velocity[first:last], like)
+        _sum_at(table, shapes, points[first:last], velocity[first:last], near)
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
-def _sum_at(table, shapes, points, velocity, like):  # type: ignore[no-untyped-def]
-    """Velocity (k,3) at up to LANES points (k,3)."""
-    block = make_block(WIDEST, like)
-    origin, lanes = enter(points, block), whole_vectors(len(points))
+def _sum_at(table, shapes, points, velocity, near):  # type: ignore[no-untyped-def]
+    """Velocity (k,3) at up to LANES points (k,3); near tiles in double precision."""
+    single, double = make_block(WIDEST, np.zeros(1, np.float32)), make_block(WIDEST, np.zeros(1))
+    enter(points, single)
+    origin, lanes = enter(points, double), whole_vectors(len(points))
+    radius = 0.0
+    for n in range(len(points)):
+        radius = max(radius, _distance(points[n], origin))
     for sheet in range(len(shapes)):
         first, rows, columns = shapes[sheet]
         tiles = max(1, -(-(columns - 1) // (WIDEST - 1)))
@@ -106,11 +114,30 @@ def _sum_at(table, shapes, points, velocity, like):  # type: ignore[no-untyped-d
             left, right = (columns - 1) * tile // tiles, (columns - 1) * (tile + 1) // tiles
             for top in range(0, rows - 1, _ROWS):
                 bottom = min(top + _ROWS, rows - 1)
-                add_tile(
-                    table, first + top * columns + left, columns, bottom - top + 1,
-                    right - left + 1, (top == 0, left == 0), origin, lanes, block,
-                )  # fmt: skip
-                leave(block, velocity)
+                corner, borders = first + top * columns + left, (top == 0, left == 0)
+                down, across = bottom - top + 1, right - left + 1
+                if _is_near(table, corner, columns, down, across, origin, radius, near):
+                    add_tile(table, corner, columns, down, across, borders, origin, lanes, double)
+                    leave(double, velocity)
+                else:
+                    add_tile(table, corner, columns, down, across, borders, origin, lanes, single)
+                    leave(single, velocity)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FASTMATH)
+def _is_near(table, first, stride, rows, columns, origin, radius, near):  # type: ignore[no-untyped-def]
+    """Whether the tile is within ``near`` lengths of its longest segment of the block's ball."""
+    nearest, longest = np.inf, 0.0
+    for i in range(rows):
+        for k in range(first + i * stride, first + i * stride + columns):
+            nearest = min(nearest, _distance(table[k, :3], origin))
+            longest = max(longest, sqrt(max(table[k, 6], table[k, 12])))
+    return nearest - radius < near * longest
+
+
+@njit(cache=True, error_model="numpy", fastmath=FASTMATH)
+def _distance(a, b):  # type: ignore[no-untyped-def]
+    return sqrt((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 + (a[2] - b[2]) ** 2)
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
