@@ -135,13 +135,16 @@ def large_free_step() -> Sequence[Figure]:
     ]
 
 
-def tree_seconds(panels: int) -> tuple[int, float]:
-    """Panels of a helical wake, and least CPU seconds of its velocity at its own vertices."""
+def tree_seconds(panels: int, error: float | None = ERROR) -> tuple[int, float]:
+    """Panels of a helical wake, and least CPU seconds of its velocity at its own vertices.
+
+    By the treecode with the ``error``, or summed directly with None.
+    """
     sheets = helical_sheets(panels)
     size = sum(sheet.circulation.size for sheet in sheets)
     repeat = 3 if panels < 100_000 else 1
     return size, cpu_seconds(
-        lambda: InducedField(sheets, error=ERROR, precision="single").vertex_velocities(), repeat
+        lambda: InducedField(sheets, error=error, precision="single").vertex_velocities(), repeat
     )
 
 
