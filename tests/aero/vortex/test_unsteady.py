@@ -17,6 +17,7 @@ from galerna.aero.vortex.unsteady import UnsteadyLattice, UnsteadyOptions
 from galerna.aero.vortex.wings import elliptic_wing
 from galerna.contract import Array
 from galerna.errors import ConvergenceError, InputError
+from validation.thin_airfoil import kuessner
 
 SPAN, ANGLE = 1e4, np.radians(0.1)
 PRESCRIBED = UnsteadyOptions(free=False, start="impulsive", tree_error=None, air_density=1.0)
@@ -81,6 +82,24 @@ def test_a_plate_that_starts_has_wagners_lift_also_with_a_wake_of_few_panels(gro
     for semichords in (2.0, 4.0, 10.0, 20.0):
         got = lift[round(0.5 * semichords / step) - 1] / (np.pi * np.sin(ANGLE))
         assert got == pytest.approx(wagner(semichords), rel=0.01), semichords
+
+
+@pytest.mark.parametrize("growing", [False, True])
+def test_a_plate_that_meets_a_gust_has_kuessners_lift(growing: bool) -> None:
+    """Within 1 % once the gust's front has left it; before, a front between points is coarse."""
+    panels, duration = 16, 5.0
+    step = 1.0 / panels
+    ages = uniform_ages(step, duration)
+    if growing:
+        ages = growing_ages(step, 6.0, near=1.0, growth=1.1, widest=0.5)
+    gust = Wind(lambda x, t: np.where(x < t, ANGLE, 0.0))
+    still = [Surface.at_rest(plate(panels))]
+    lattice = UnsteadyLattice(gust, ages, PRESCRIBED, wake_inflow=Wind())
+    lift = lift_history(lattice, lambda t: still, step, round(duration / step))
+    for semichords in (2.5, 4.0, 6.0, 10.0):
+        got = lift[round(0.5 * semichords / step) - 1] / (np.pi * ANGLE)
+        assert got == pytest.approx(kuessner(semichords), rel=0.01), semichords
+    assert lift[round(0.5 / step) - 1] / (np.pi * ANGLE) == pytest.approx(kuessner(1.0), rel=0.03)
 
 
 def test_wagners_lift_converges_with_the_panels() -> None:
