@@ -1,7 +1,7 @@
 """Make everything that is generated here: ``python -m docs.build [PART ...]``.
 
-Parts: conventions, case, turbines, vortex_sections, demo, validation, benchmarks; all where none
-is given.
+Parts: conventions, case, turbines, vortex_sections, vortex_wings, demo, validation, benchmarks; all
+where none is given.
 """
 
 from __future__ import annotations
@@ -13,7 +13,13 @@ import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
-from docs import case_reference, conventions_figure, turbine_pages, vortex_section_pages
+from docs import (
+    case_reference,
+    conventions_figure,
+    turbine_pages,
+    vortex_section_pages,
+    vortex_wing_figures,
+)
 
 HERE = Path(__file__).parent
 ROOT = HERE.parent
@@ -53,6 +59,7 @@ PARTS: dict[str, Callable[[], Path]] = {
     "case": case_reference.write,
     "turbines": turbine_pages.write,
     "vortex_sections": vortex_section_pages.write,
+    "vortex_wings": vortex_wing_figures.draw,
     "demo": demo,
     "validation": validation,
     "benchmarks": benchmarks,
