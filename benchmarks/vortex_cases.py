@@ -14,9 +14,10 @@ import numpy as np
 from galerna import turbine as turbines
 from galerna.aero.vortex.ages import revolution_ages
 from galerna.aero.vortex.blades import blade_lattice
+from galerna.aero.vortex.rotor_axis import RotorAxis
 from galerna.aero.vortex.sheet import Sheet
 from galerna.aero.vortex.surface import Surface
-from galerna.aero.vortex.wake import RotorAxis, helical_wake
+from galerna.aero.vortex.wake import helical_wake
 from galerna.contract import Array
 from galerna.turbine.geometry import blade_frames
 from galerna.units import RPM

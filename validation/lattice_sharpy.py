@@ -10,9 +10,9 @@ import numpy as np
 
 from galerna import turbine as turbines
 from galerna.aero.vortex.ages import revolution_ages
+from galerna.aero.vortex.rotor_axis import RotorAxis
 from galerna.aero.vortex.steady import SteadySolution, solve_steady
 from galerna.aero.vortex.surface import Surface
-from galerna.aero.vortex.wake import RotorAxis
 from galerna.contract import Array
 from galerna.structure.frames import rotation_about
 from galerna.turbine.model import Turbine

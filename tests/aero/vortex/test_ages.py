@@ -7,8 +7,8 @@ import pytest
 
 from galerna.aero.vortex.ages import growing_ages, revolution_ages, rotor_ages, uniform_ages
 from galerna.aero.vortex.blades import blade_lattice
+from galerna.aero.vortex.rotor_axis import RotorAxis
 from galerna.aero.vortex.steady import solve_steady
-from galerna.aero.vortex.wake import RotorAxis
 from galerna.errors import InputError
 from galerna.structure.frames import rotation_about
 from galerna.turbine import load

@@ -10,9 +10,9 @@ from galerna.aero.vortex.ages import growing_ages, revolution_ages
 from galerna.aero.vortex.cores import VortexCore
 from galerna.aero.vortex.free_wake import FreeWake
 from galerna.aero.vortex.helix import turns
+from galerna.aero.vortex.rotor_axis import RotorAxis
 from galerna.aero.vortex.steady import SteadySolution, solve_steady
 from galerna.aero.vortex.symmetry import RotationalSymmetry
-from galerna.aero.vortex.wake import RotorAxis
 from galerna.aero.vortex.wings import trapezoidal_wing
 from galerna.errors import ConvergenceError
 

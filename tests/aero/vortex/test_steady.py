@@ -10,10 +10,10 @@ import pytest
 from galerna.aero.vortex.ages import revolution_ages
 from galerna.aero.vortex.biot_savart import direct_velocity
 from galerna.aero.vortex.mirror import MirrorPlane
+from galerna.aero.vortex.rotor_axis import RotorAxis
 from galerna.aero.vortex.steady import SteadySolution, solve_steady
 from galerna.aero.vortex.surface import Surface, collocation_normals, collocation_points
 from galerna.aero.vortex.symmetry import RotationalSymmetry
-from galerna.aero.vortex.wake import RotorAxis
 from galerna.aero.vortex.wings import elliptic_wing, trapezoidal_wing
 from galerna.errors import InputError
 from galerna.units import RPM

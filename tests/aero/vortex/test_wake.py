@@ -9,7 +9,8 @@ import pytest
 
 from galerna.aero.vortex.ages import growing_ages, uniform_ages
 from galerna.aero.vortex.cores import VortexCore
-from galerna.aero.vortex.wake import THINNEST, RotorAxis, Wake, helical_wake, straight_wake
+from galerna.aero.vortex.rotor_axis import RotorAxis
+from galerna.aero.vortex.wake import THINNEST, Wake, helical_wake, straight_wake
 from galerna.errors import InputError
 
 GROWING = growing_ages(0.05, 4.0, near=0.3, growth=1.2, widest=0.35)

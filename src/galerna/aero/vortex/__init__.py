@@ -23,7 +23,8 @@ _MODULES = {
     "steady": ("SteadySolution", "solve_steady"),
     "surface": ("Surface",),
     "system": ("BoundSystem",),
-    "wake": ("RotorAxis", "Wake"),
+    "rotor_axis": ("RotorAxis",),
+    "wake": ("Wake",),
     "wings": ("elliptic_wing", "trapezoidal_wing", "wing_corners"),
 }
 _HOMES = {name: module for module, names in _MODULES.items() for name in names}

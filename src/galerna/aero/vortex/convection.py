@@ -18,7 +18,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from galerna.aero.vortex.wake import RotorAxis, Wake, interpolated
+from galerna.aero.vortex.rotor_axis import RotorAxis
+from galerna.aero.vortex.wake import Wake, interpolated
 from galerna.contract import Array
 from galerna.errors import ConvergenceError
 

@@ -13,15 +13,12 @@ with U the wind and u the induced velocity. A wing is the case R = 1.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.spatial.transform import Rotation
 
+from galerna.aero.vortex.rotor_axis import RotorAxis
 from galerna.contract import Array
-
-if TYPE_CHECKING:
-    from galerna.aero.vortex.wake import RotorAxis
 
 
 def turns(ages: Array, axis: RotorAxis | None) -> Array:

@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from galerna.aero.vortex.convection import Convection, Earlier
-from galerna.aero.vortex.wake import RotorAxis, Wake
+from galerna.aero.vortex.rotor_axis import RotorAxis
+from galerna.aero.vortex.wake import Wake
 from galerna.contract import Array
 
 

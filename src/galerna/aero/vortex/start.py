@@ -17,9 +17,10 @@ from galerna.aero.vortex.cores import VortexCore
 from galerna.aero.vortex.free_wake import FreeWake
 from galerna.aero.vortex.helix import carried, drifted_centre, turns
 from galerna.aero.vortex.lattice import Lattice
+from galerna.aero.vortex.rotor_axis import RotorAxis
 from galerna.aero.vortex.steady import solve_steady
 from galerna.aero.vortex.surface import Surface
-from galerna.aero.vortex.wake import RotorAxis, Wake
+from galerna.aero.vortex.wake import Wake
 from galerna.contract import Array
 from galerna.units import DEG
 

@@ -14,11 +14,12 @@ from galerna.aero.vortex.field import InducedField
 from galerna.aero.vortex.free_wake import FreeWake, find_free_wake
 from galerna.aero.vortex.loads import SurfaceLoads
 from galerna.aero.vortex.mirror import MirrorPlane
+from galerna.aero.vortex.rotor_axis import RotorAxis
 from galerna.aero.vortex.sheet import Sheet
 from galerna.aero.vortex.steady_flow import SteadyFlow, Wind, extent
 from galerna.aero.vortex.surface import Surface, collocation_points
 from galerna.aero.vortex.symmetry import RotationalSymmetry, sector_of
-from galerna.aero.vortex.wake import RotorAxis, Wake
+from galerna.aero.vortex.wake import Wake
 from galerna.contract import Array
 from galerna.errors import InputError
 from galerna.units import AIR_DENSITY

@@ -17,6 +17,7 @@ from galerna.aero.vortex.helix import carried, drifted_centre
 from galerna.aero.vortex.influence import strip_influence
 from galerna.aero.vortex.loads import SurfaceLoads, lattice_loads
 from galerna.aero.vortex.mirror import MirrorPlane
+from galerna.aero.vortex.rotor_axis import RotorAxis
 from galerna.aero.vortex.sheet import Sheet
 from galerna.aero.vortex.surface import (
     Surface,
@@ -29,7 +30,7 @@ from galerna.aero.vortex.surface import (
 )
 from galerna.aero.vortex.symmetry import RotationalSymmetry
 from galerna.aero.vortex.system import BoundSystem
-from galerna.aero.vortex.wake import RotorAxis, Wake
+from galerna.aero.vortex.wake import Wake
 from galerna.contract import Array
 
 Wind = Callable[[Array], Array]

@@ -29,13 +29,14 @@ from galerna.aero.vortex.flow import (
 from galerna.aero.vortex.loads import SurfaceLoads
 from galerna.aero.vortex.memory import Memory, from_arrays, to_arrays
 from galerna.aero.vortex.quasi_steady import steady_wake
+from galerna.aero.vortex.rotor_axis import RotorAxis
 from galerna.aero.vortex.separation import Separation
 from galerna.aero.vortex.shedding import History, Shedding, edge_panels, shedding
 from galerna.aero.vortex.sheet import Sheet
 from galerna.aero.vortex.surface import Surface, collocation_velocities
 from galerna.aero.vortex.system import BoundSystem
 from galerna.aero.vortex.unsteady_options import UnsteadyOptions
-from galerna.aero.vortex.wake import RotorAxis, Wake, courant_numbers
+from galerna.aero.vortex.wake import Wake, courant_numbers
 from galerna.aero.vortex.wake_clock import WakeClock
 from galerna.contract import Array, Inflow
 from galerna.errors import InputError

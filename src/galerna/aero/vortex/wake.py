@@ -27,21 +27,13 @@ from numba import njit
 
 from galerna.aero.vortex.cores import VortexCore
 from galerna.aero.vortex.helix import carried
+from galerna.aero.vortex.rotor_axis import RotorAxis
 from galerna.aero.vortex.sheet import Sheet
 from galerna.contract import Array
 from galerna.errors import InputError
 
 STEP_TOLERANCE = 1e-6  #: of the first panel's age, by which a step may exceed it
 THINNEST = 0.25  #: of the way that fluid has gone from the edge: no core is thicker
-
-
-@dataclass(frozen=True, eq=False)
-class RotorAxis:
-    """A rotor's axis: a point (3,) m, the unit direction (3,) and the ``speed`` rad/s about it."""
-
-    origin: Array
-    direction: Array
-    speed: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)

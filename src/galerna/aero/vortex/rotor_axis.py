@@ -1,0 +1,16 @@
+"""The axis about which a rotor turns."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from galerna.contract import Array
+
+
+@dataclass(frozen=True, eq=False)
+class RotorAxis:
+    """A rotor's axis: a point (3,) m, the unit direction (3,) and the ``speed`` rad/s about it."""
+
+    origin: Array
+    direction: Array
+    speed: float = 0.0
