@@ -19,6 +19,9 @@ MODULES = (
     "lattice_wings",
     "spanwise",
     "lattice_sharpy",
+    "lattice_rotors",
+    "lattice_yaw",
+    "lattice_turbulence",
 )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
@@ -43,8 +43,8 @@ class Mesh:
 class SteadyRotor:
     """Coefficients of the rotor, without and with drag, and along blade 1 (n,) of its lattice.
 
-    ``c_out``, ``c_in`` 1/m as in the dissertation's eq. 3.9; ``lift_coefficient`` and the polar's
-    ``angle_of_attack`` rad by that lift.
+    ``c_out``, ``c_in`` 1/m as in the dissertation's eq. 3.9; the polar's ``drag_coefficient`` and
+    ``angle_of_attack`` rad are those of ``lift_coefficient``.
     """
 
     thrust_coefficient: float
@@ -57,6 +57,7 @@ class SteadyRotor:
     c_out_with_drag: Array
     c_in_with_drag: Array
     lift_coefficient: Array
+    drag_coefficient: Array
     angle_of_attack: Array
     solution: SteadySolution
 
@@ -136,10 +137,6 @@ def _coefficients(
         float((thrust + added) / scale), float((torque + twisted) * to_power),
         np.linalg.norm(np.cross(radius[bare:], axis.direction), axis=1),
         *along(strips), *along(strips + drag[bare:]),
-        viscous.lift_coefficient[bare:], viscous.angle_of_attack[bare:], solution,
+        viscous.lift_coefficient[bare:], viscous.drag_coefficient[bare:],
+        viscous.angle_of_attack[bare:], solution,
     )  # fmt: skip
-
-
-def with_free_wake(mesh: Mesh) -> Mesh:
-    """The same size with a free wake."""
-    return replace(mesh, free=True)
