@@ -299,10 +299,13 @@ class UnsteadyLattice:
         ]
 
     def _far_field(self, wake: Wake) -> InducedField | None:
-        """The field of all panels but the first, summed fast for all solutions of a step."""
+        """The field of all panels but the first, summed fast for all solutions of a step.
+
+        Panels far from a point are summed in single precision, at an error of 1e-7.
+        """
         if self.options.quasi_steady:
             return None
-        return self.clock.field(wake.sheets(self.options.core, rows=slice(1, None)))
+        return self.clock.field(wake.sheets(self.options.core, rows=slice(1, None)), "mixed")
 
 
 def _speed(surfaces: Sequence[Surface], wind: Array) -> float:
