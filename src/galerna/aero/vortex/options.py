@@ -141,7 +141,8 @@ class VortexLatticeOptions(_Block):
         default=True, description="Whether turbulence moves the wake too, or its mean wind alone."
     )
     core_radius: NonNegativeFloat = Field(
-        default=0.1, description="Radius of a vortex core when it is shed, over the local chord."
+        default=0.1,
+        description="Radius of a vortex core when it is shed, over the mean chord of the lattice.",
     )
     core_growth: NonNegativeFloat = Field(
         default=1e-4,
