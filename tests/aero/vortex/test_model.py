@@ -1,16 +1,21 @@
 """The vortex lattice as a load model: its loads, its channels, its clock, what it refuses."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import galerna
+from galerna.aero.vortex.model import VortexLattice
 from galerna.aero.vortex.options import VortexLatticeOptions
 from galerna.aero.vortex.section_lift import SectionLift, strip_chords
 from galerna.aero.vortex.wake_size import wake_size
 from galerna.case import load
 from galerna.contract import LoadModel
 from galerna.errors import ConvergenceError, InputError
+from galerna.kinematics import PrescribedMotion, PrescribedOperation
 from galerna.machine import build_machine
+from galerna.signals import Signal
 
 SMALL = {
     "model": "vortex_lattice",
@@ -157,6 +162,75 @@ def test_a_restored_state_goes_on_with_the_same_bits(wake):
     simulation.advance()
     for name, value in simulation.record().items():
         np.testing.assert_array_equal(value, first[name])
+
+
+def test_a_resumed_run_knows_its_time_and_does_not_tell_again():
+    turbulence = {"kind": "mann", "turbulence_class": "B", "points_across": 8, "time_step_s": 0.5}
+    case = {
+        "inflow": {"wind_speed_m_s": 8.0, "turbulence": turbulence},
+        **operation(rotor_speed_rpm=0.0),
+    }
+    first, resumed = advanced(3, case=case), machine(case=case)
+    resumed.simulation.restore(first.simulation.state())
+    place = np.array([[-100.0, 0.0, 90.0]])
+    np.testing.assert_array_equal(
+        resumed.vortex_lattice.velocity(place), first.vortex_lattice.velocity(place)
+    )
+    resumed.simulation.advance()
+    told = [{line.partition(": ")[2] for line in m.notices()} for m in (first, resumed)]
+    assert told[0]
+    assert not told[0] & told[1]
+
+
+def test_a_notice_of_a_step_taken_back_is_taken_back_too():
+    made = machine(case=operation(rotor_speed_rpm=0.0))
+    before = made.simulation.state()
+    made.simulation.advance()
+    assert made.notices()
+    made.simulation.restore(before)
+    assert made.notices() == ()
+
+
+def test_a_first_step_begun_anew_from_elsewhere_forgets_where_it_was_begun():
+    turned = machine(wake="free", case=operation(azimuth_deg=40.0)).simulation.structure.motions[0]
+    start = machine(wake="free").simulation.structure.motions[0]
+    again, fresh = machine(wake="free").vortex_lattice, machine(wake="free").vortex_lattice
+    again.begin_step(0.0, 0.15, start)
+    for model in (again, fresh):
+        model.begin_step(0.0, 0.15, turned)
+    np.testing.assert_array_equal(again.loads(0.15, turned).force, fresh.loads(0.15, turned).force)
+
+
+def test_without_drag_no_polars_are_needed():
+    turbine = galerna.load_turbine("nrel5mw")
+    lines = {"polars": (), "camber": np.array([[0.0, 0.0], [1.0, 0.0]])}
+    airfoils = {name: replace(a, **lines) for name, a in turbine.airfoils.items()}
+    bare = replace(turbine, airfoils=airfoils)
+    options = {**SMALL, "drag": False, "root_span": 0.2}
+    with_polars, without = (rotor_loads(t, camber="none", **options) for t in (turbine, bare))
+    np.testing.assert_array_equal(with_polars["rotor_thrust"], without["rotor_thrust"])
+    lift = slice(4, None)
+    np.testing.assert_array_equal(
+        with_polars["lift_coefficient"][:, lift], without["lift_coefficient"][:, lift]
+    )
+    with pytest.raises(InputError, match="no polars"):
+        rotor_loads(bare, **{**options, "drag": True})
+
+
+def rotor_loads(turbine, **options):
+    """What a rotor in uniform wind records after a step."""
+
+    class Uniform:
+        def velocity(self, points, time):
+            return np.tile([8.0, 0.0, 0.0], (len(points), 1))
+
+    chosen = VortexLatticeOptions.model_validate(options)
+    model = VortexLattice(turbine, Uniform(), rotor_speed=1.0, wind_speed=8.0, options=chosen)
+    turning = PrescribedOperation(Signal.constant(1.0), (Signal.constant(0.0),) * 3)
+    motion = PrescribedMotion(turbine, turning, [model.stations]).motions[0]
+    model.begin_step(0.0, 0.1, motion)
+    model.end_step(0.1, motion)
+    return model.record()
 
 
 def test_a_free_wake_begins_where_it_will_stay():
@@ -306,12 +380,6 @@ def test_wind_that_is_no_number_names_the_blade():
 
 def test_a_blade_inside_the_tower_is_named():
     turbine = galerna.load_turbine("nrel5mw")
-    from dataclasses import replace
-
-    from galerna.aero.vortex.model import VortexLattice
-    from galerna.kinematics import PrescribedMotion, PrescribedOperation
-    from galerna.signals import Signal
-
     near = replace(turbine, nacelle=replace(turbine.nacelle, overhang=0.0, tilt=0.0))
 
     class Uniform:

@@ -83,8 +83,7 @@ class VortexLattice:
             Stations("hub"),
             *((Stations("tower", turbine.tower.axis_span),) if tower else ()),
         )
-        self.notices: list[str] = []  #: what a user should know of the run so far, a line each
-        self._polar = PolarForces(self.lattice, air_density)
+        self._polar = PolarForces(self.lattice, air_density, needs_polars=self.options.drag)
         self._density = air_density
         self._tower_wind = TowerWind(inflow, turbine.tower, self.stations) if tower else None
         self._flow = UnsteadyLattice(
@@ -104,8 +103,9 @@ class VortexLattice:
         self._shown: _Evaluation | None = None
         self._time = 0.0
         self._started = False
-        self._first_wake: Wake | None = None
-        self._told: set[tuple[int, int]] = set()
+        self._first: tuple[Array, Wake | None] | None = None
+        self._start_notice = ""
+        self._told: dict[tuple[int, int], str] = {}  # notices by blade and strip
 
     @property
     def channels(self) -> tuple[Channel, ...]:
@@ -129,6 +129,11 @@ class VortexLattice:
         return self.wake_size.step
 
     @property
+    def notices(self) -> list[str]:
+        """What a user should know of the run so far, a line each."""
+        return [line for line in (self._start_notice, *self._told.values()) if line]
+
+    @property
     def wake_panels(self) -> int:
         """Panels of all wakes."""
         strips = len(self.lattice.span) - 1
@@ -140,10 +145,8 @@ class VortexLattice:
         frames = self._frames(motion)
         axis = RotorAxis(frames.hub, frames.shaft[:, 0], frames.rotor_speed)
         surfaces = self._surfaces(frames)
-        if not self._started:
-            self._first_wake = self._drifted_wake(time, surfaces, axis)
-            self._started = True
-        self._flow.begin_step(time, dt, surfaces, axis, self._first_wake)
+        wake = None if self._started else self._first_wake(time, surfaces, axis)
+        self._flow.begin_step(time, dt, surfaces, axis, wake)
         self._trial = None
 
     def loads(self, time: float, motion: Motion) -> Loads:
@@ -163,6 +166,7 @@ class VortexLattice:
         assert self._trial is not None
         self._flow.end_step(time, self._trial.surfaces)
         self._shown, self._trial, self._time = self._trial, None, time
+        self._started = True
         if self.options.drag:
             self._notice_outside(self._shown.polar, time)
 
@@ -199,13 +203,19 @@ class VortexLattice:
         return self._flow.sheets()
 
     def state(self) -> dict[str, np.ndarray]:
-        """Everything that the next step depends on: the wakes and the last circulations."""
-        return self._flow.state()
+        """The wakes and the last circulations, their time, and of which strips was told."""
+        if not self._started:
+            return {}
+        told = np.array(list(self._told), dtype=np.int64).reshape(-1, 2)
+        return {**self._flow.state(), "told": told, "time": np.array(self._time)}
 
     def restore(self, state: Mapping[str, np.ndarray]) -> None:
         """Take ``state`` back."""
         self._flow.restore(state)
         self._trial, self._started = None, bool(state)
+        self._time = float(state.get("time", 0.0))
+        told = [(int(b), int(strip)) for b, strip in state.get("told", ())]
+        self._told = {place: self._told.get(place, "") for place in told}
 
     def _frames(self, motion: Motion) -> Frames:
         blades, stations = len(self.blades), len(self.lattice.stations)
@@ -298,6 +308,15 @@ class VortexLattice:
         force[:, bare] += lift[:, bare]
         return force
 
+    def _first_wake(self, time: float, surfaces: list[Surface], axis: RotorAxis) -> Wake | None:
+        """What ``_drifted_wake`` finds, sought once for a motion."""
+        moving = [a for s in surfaces for a in (s.lattice.corners, s.velocity)]
+        seen = np.concatenate([np.array([time]), *(a.ravel() for a in moving)])
+        if self._first is None or not np.array_equal(self._first[0], seen):
+            self._start_notice = ""
+            self._first = seen, self._drifted_wake(time, surfaces, axis)
+        return self._first[1]
+
     def _drifted_wake(self, time: float, surfaces: list[Surface], axis: RotorAxis) -> Wake | None:
         """Where the first free wake lies, None where it begins as a helix along the wind."""
         free, settings = self.options.wake == "free", self._flow.options
@@ -310,7 +329,7 @@ class VortexLattice:
         try:
             return drifted_wake(surfaces, self._flow.ages, axis, wind, settings.core)
         except ConvergenceError as error:
-            self.notices.append(f"the run begins with the wake along the wind: {error.what}")
+            self._start_notice = f"the run begins with the wake along the wind: {error.what}"
             return None
 
     def _separated_angles(self) -> Array | None:
@@ -330,10 +349,9 @@ class VortexLattice:
             place = int(blade), int(strip)
             if place in self._told:
                 continue
-            self._told.add(place)
             lift = float(polar.lift_coefficient[place])
             said = self._polar.describe_outside(self.blades[place[0]], place[1], lift)
-            self.notices.append(f"t = {time:.6g} s: {said}")
+            self._told[place] = f"t = {time:.6g} s: {said}"
 
 
 def _blade_lattice(turbine: Turbine, options: VortexLatticeOptions) -> BladeLattice:

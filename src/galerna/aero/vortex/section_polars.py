@@ -72,6 +72,11 @@ class SectionPolars:
         return cls.of_table(sections.table)
 
     @classmethod
+    def none(cls, strips: int) -> SectionPolars:
+        """For strips that have no polars: all coefficients are zero."""
+        return cls.of_table(np.zeros((strips, 3, 3)))
+
+    @classmethod
     def of_polar(cls, polar: Polar, strips: int) -> SectionPolars:
         """One polar for all strips of a wing; InputError where it cannot be used."""
         table = tabulate_polar("of the wing", polar, WHOLE_TABLE)

@@ -63,15 +63,26 @@ class PolarForces:
     """Forces on the blades of a lattice that come from polars.
 
     All arrays may have leading dimensions, such as one of the blades, which are alike.
-    Raises InputError where the blade's airfoils have no polars.
+    Raises InputError where the blade's airfoils have no polars, unless these are not needed:
+    then there are no forces, and lift coefficients are told all the same.
     """
 
-    def __init__(self, lattice: BladeLattice, air_density: float = AIR_DENSITY) -> None:
+    def __init__(
+        self,
+        lattice: BladeLattice,
+        air_density: float = AIR_DENSITY,
+        *,
+        needs_polars: bool = True,
+    ) -> None:
         self.lattice, self.air_density = lattice, air_density
-        self.polars = SectionPolars.of_blade(lattice.sections, "blade")
+        without = lattice.sections is None and not needs_polars
+        if without:
+            self.polars = SectionPolars.none(len(lattice.chord) - 1)
+        else:
+            self.polars = SectionPolars.of_blade(lattice.sections, "blade")
         chord = lattice.chord
         self._chord = 0.5 * (chord[1:] + chord[:-1])
-        self._bare = ~self.polars.lifting
+        self._bare = ~self.polars.lifting & (not without)
         self._bare[: lattice.bare_strips] = True
 
     def points(self, position: Array, rotation: Array) -> Array:
