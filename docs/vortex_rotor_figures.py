@@ -15,6 +15,7 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from matplotlib.axes import Axes
+from matplotlib.ticker import NullFormatter, ScalarFormatter
 
 from validation import lattice_rotors as rotors
 from validation import lattice_sharpy as sharpy
@@ -101,10 +102,16 @@ def convergence() -> Path:
                 axis.loglog(counts[:-1], errors, "o-", color=color)
             theirs = [100 * abs(pair[i]) for pair in wanted.values()]
             axis.loglog(list(wanted), theirs, "x:", color=color, label=f"{name}, dissertation")
-    for axis, text in zip(
-        axes, ("panels of chord", "panels of span", "revolutions in the wake"), strict=True
+    for axis, text, ticks in zip(
+        axes,
+        ("panels of chord", "panels of span", "revolutions in the wake"),
+        ((4, 8, 16, 32, 64), (7, 14, 28), (1, 3, 5, 7, 10)),
+        strict=True,
     ):
         _label(axis, text, "error [%]")
+        axis.xaxis.set_major_formatter(ScalarFormatter())
+        axis.xaxis.set_minor_formatter(NullFormatter())
+        axis.set_xticks(ticks)
     axes[0].legend(fontsize=7)
     return _save(figure, "vortex_rotor_convergence")
 
@@ -185,6 +192,7 @@ def yaw_sweep() -> Path:
     for row, (name, where, _) in zip(axes, rows, strict=True):
         for axis, text in zip(row, ("mean", "standard deviation", "largest at [deg]"), strict=True):
             _label(axis, "yaw error [deg]", text)
+        row[2].set_visible(not name.startswith("C_"))
         row[0].set_title(f"{LABELS[name]} {where}", fontsize=9, loc="left")
     axes[0, 0].legend(fontsize=8)
     return _save(figure, "vortex_yaw_sweep")
@@ -209,7 +217,7 @@ def turbulence_series() -> Path:
     """Figs. 4.39 to 4.42, 4.49 to 4.53: the last seven revolutions, and deviations on the span."""
     figure, axes = plt.subplots(5, 1, figsize=(10, 14), constrained_layout=True)
     turbine = like_the_avatar()[0]
-    shown = slice(-7 * turbulence.STEPS, None)
+    shown = slice(-7 * turbulence.LONG.steps, None)
     for model in turbulence.MODELS:
         series, style = turbulence.series(model), STYLES[model]
         for axis, name in zip(axes[:4], turbulence.NAMES, strict=True):
