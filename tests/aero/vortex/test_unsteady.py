@@ -12,6 +12,8 @@ from scipy.special import hankel2, i0e, i1e, k0e, k1e
 from galerna.aero.vortex.ages import growing_ages, uniform_ages
 from galerna.aero.vortex.cores import VortexCore
 from galerna.aero.vortex.lattice import Lattice
+from galerna.aero.vortex.rotor_axis import RotorAxis
+from galerna.aero.vortex.start import drifted_wake
 from galerna.aero.vortex.surface import Surface
 from galerna.aero.vortex.unsteady import UnsteadyLattice, UnsteadyOptions
 from galerna.aero.vortex.wings import elliptic_wing
@@ -335,3 +337,49 @@ def test_the_quasi_steady_lift_has_no_memory() -> None:
     lift = lift_history(lattice, lambda t: still, 0.1, 10)
     assert lift[[4, 5, 6]] == pytest.approx(np.full(3, np.pi * 0.01), rel=0.03)
     assert np.abs(lift[[0, 1, 2, 3, 7, 8, 9]]).max() < 1e-12
+
+
+@pytest.mark.parametrize("drifted", [False, True])
+def test_a_rotor_on_a_moving_axis_begins_with_the_wake_of_its_relative_wind(drifted: bool) -> None:
+    """The same rotor, seen by an observer who moves."""
+    ages, direction = growing_ages(0.03, 1.0, near=0.09, growth=1.3, widest=0.1), np.eye(3)[0]
+    forces = []
+    for boost in (np.zeros(3), np.array([1.0, 2.0, -0.5])):
+
+        def rotor(time: float, boost: Array = boost) -> tuple[list[Surface], RotorAxis]:
+            radius, along = np.linspace(2.0, 6.0, 6), np.linspace(-0.1, 0.3, 4)[:, None]
+            twist = np.arctan(1.0 / radius) - 0.08
+            base = np.stack(
+                [along * np.sin(twist), along * np.cos(twist), radius + 0.0 * along], axis=2
+            )
+            blades = []
+            for azimuth in (6.0 * time, 6.0 * time + np.pi):
+                c, s = np.cos(azimuth), np.sin(azimuth)
+                arm = base @ np.array([[1, 0, 0], [0, c, s], [0, -s, c]])
+                speed = np.cross(6.0 * direction, arm) + boost
+                blades.append(Surface(Lattice(arm + time * boost), speed))
+            return blades, RotorAxis(time * boost, direction, 6.0, boost)
+
+        blades, axis = rotor(0.0)
+        core = VortexCore(0.3)
+        wind = np.array([6.0, 0.0, 0.0])
+        wake = drifted_wake(blades, ages, axis, wind, core) if drifted else None
+        lattice = UnsteadyLattice(
+            Blowing(wind + boost), ages, UnsteadyOptions(free=False, core=core, tree_error=None)
+        )
+        for i in range(6):
+            lattice.begin_step(0.03 * i, 0.03, *rotor(0.03 * i), wake)
+            solution = lattice.solve(0.03 * (i + 1), rotor(0.03 * (i + 1))[0])
+            lattice.end_step(0.03 * (i + 1), rotor(0.03 * (i + 1))[0])
+        forces.append(np.array([load.force for load in solution.loads]))
+    np.testing.assert_allclose(forces[0], forces[1], atol=1e-9 * np.abs(forces[0]).max())
+
+
+class Blowing:
+    """A uniform wind (3,) m/s."""
+
+    def __init__(self, wind: Array) -> None:
+        self.wind = wind
+
+    def velocity(self, points: Array, time: float) -> Array:
+        return np.broadcast_to(self.wind, points.shape)

@@ -143,7 +143,7 @@ class VortexLattice:
         """Carry the wake on for ``dt`` s."""
         self._see_tower(motion, time)
         frames = self._frames(motion)
-        axis = RotorAxis(frames.hub, frames.shaft[:, 0], frames.rotor_speed)
+        axis = RotorAxis(frames.hub, frames.shaft[:, 0], frames.rotor_speed, frames.hub_velocity)
         surfaces = self._surfaces(frames)
         wake = None if self._started else self._first_wake(time, surfaces, axis)
         self._flow.begin_step(time, dt, surfaces, axis, wake)
@@ -321,7 +321,7 @@ class VortexLattice:
         """Where the first free wake lies, None where it begins as a helix along the wind."""
         free, settings = self.options.wake == "free", self._flow.options
         edges = np.concatenate([s.lattice.vertices[-1] for s in surfaces])
-        wind = self._flow.wake_inflow.velocity(edges, time).mean(axis=0)
+        wind = self._flow.wake_inflow.velocity(edges, time).mean(axis=0) - axis.velocity
         through = wind @ axis.direction
         windmill = through > SLOWEST_WINDMILL * abs(axis.speed) * self.turbine.rotor_radius > 0.0
         if not (free and self.options.start == "steady" and windmill):

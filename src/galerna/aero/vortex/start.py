@@ -41,14 +41,15 @@ def drifted_wake(
 ) -> Wake:
     """A wake without circulation that lies like the free wake of the steady rotor.
 
-    ``wind`` (3,) m/s carries it. Raises ConvergenceError where the steady wake is not found.
+    ``wind`` (3,) m/s, relative to the axis, carries it. Raises ConvergenceError where the steady
+    wake is not found.
     """
     columns = _columns(surfaces[0].shape[1])
     rows = _rows(ages, axis)
     length = ages[-1] * np.linalg.norm(wind) / (2.0 * _radius(surfaces, axis))
     free = FreeWake(length=min(1.0, FREE_SHARE * length), tolerance=TOLERANCE, sweeps=SWEEPS)
     solved = solve_steady(
-        [_coarser(s, columns) for s in surfaces],
+        [_coarser(s, columns, axis) for s in surfaces],
         (wind @ axis.direction) * axis.direction,
         axis=axis,
         ages=ages[rows],
@@ -76,12 +77,12 @@ def _radius(surfaces: Sequence[Surface], axis: RotorAxis) -> float:
     return float(np.linalg.norm(across, axis=1).max())
 
 
-def _coarser(surface: Surface, columns: Numbers) -> Surface:
-    """The surface with two panels along the chord and the columns given."""
+def _coarser(surface: Surface, columns: Numbers, axis: RotorAxis) -> Surface:
+    """The surface with two panels along the chord and the columns given, about a still axis."""
     m = surface.shape[0]
     rows = np.unique([0, m // 2, m])
     part = np.ix_(rows, columns)
-    return Surface(Lattice(surface.lattice.corners[part]), surface.velocity[part])
+    return Surface(Lattice(surface.lattice.corners[part]), surface.velocity[part] - axis.velocity)
 
 
 def _columns(panels: int) -> Numbers:

@@ -139,7 +139,7 @@ def straight_wake(ages: Array, edges: Sequence[Array], drift: Sequence[Array]) -
 def helical_wake(ages: Array, edges: Sequence[Array], axis: RotorAxis, wind: Array) -> Wake:
     """A wake without circulation that trailing edges (n+1,3) m leave in turning about an axis.
 
-    The ``wind`` (3,) m/s carries it away.
+    The ``wind`` (3,) m/s, relative to the axis, carries it away.
     """
     vertices = (carried(ages, edge, wind, axis) for edge in edges)
     centre = axis.origin + ages[:, None] * wind

@@ -64,7 +64,7 @@ class WakeClock:
         edges = [s.lattice.vertices[-1] for s in surfaces]
         if axis is not None:
             blown = self.wind.velocity(np.concatenate(edges), time)
-            return helical_wake(self.ages, edges, axis, blown.mean(axis=0))
+            return helical_wake(self.ages, edges, axis, blown.mean(axis=0) - axis.velocity)
         moving = [Lattice(s.velocity, s.lattice.rings).vertices[-1] for s in surfaces]
         drift = [self.wind.velocity(e, time) - v for e, v in zip(edges, moving, strict=True)]
         return straight_wake(self.ages, edges, drift)
