@@ -52,7 +52,7 @@ class LoadedCase:
         except CaseError:
             raise
         except InputError as error:
-            what = f"{error.where}: {error.what}"
+            what = error.what if error.where == path[-1] else f"{error.where}: {error.what}"
             raise CaseError(self.document, [Problem(path, what, error.hint)]) from error
 
 

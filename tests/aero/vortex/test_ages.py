@@ -79,6 +79,12 @@ def test_ages_that_make_no_wake_are_refused(step: float, duration: float, growth
         growing_ages(step, duration, growth=growth)
 
 
+def test_a_wake_too_long_for_a_computer_is_refused_at_once() -> None:
+    with pytest.raises(InputError, match=r"more than 100000 rows") as error:
+        rotor_ages(1.0, 8.0, 63.0, diameters=3e9)
+    assert "shorter" in error.value.hint
+
+
 def test_a_rotor_without_wind_and_speed_is_refused() -> None:
     with pytest.raises(InputError, match="no wake away"):
         rotor_ages(0.0, 0.0, 63.0)

@@ -333,7 +333,10 @@ def test_odd_operation_gives_numbers_and_tells_which_sections_left_their_polar(c
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"time_step_s": 0.5}, r"time_step_s: 0.5 s is too large: rotor permits at most 0.182 s"),
+        (
+            {"time_step_s": 0.5},
+            "case: time_step_s: 0.5 s is too large: rotor permits at most 0.182 s",
+        ),
         (operation(rotor_speed_rpm=-9.0), "the rotor turns backwards"),
         ({"inflow": {"wind_speed_m_s": 0.0}}, "a wind of 0 m/s does not carry the wake away"),
         ({"inflow": {"wind_speed_m_s": 0.0}, **operation(rotor_speed_rpm=0.0)}, "give a wind, or"),

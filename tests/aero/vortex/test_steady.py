@@ -192,6 +192,12 @@ def test_rings_of_sharpy_have_its_circulation_and_forces(revolutions: int) -> No
     assert apart < 1e-5 * np.linalg.norm(force, axis=2).max()
 
 
+def not_a_number_at_a_corner():
+    corners = trapezoidal_wing(5.0, 1.0, 1, 2)
+    corners[0, 1, 2] = np.nan
+    return corners
+
+
 @pytest.mark.parametrize(
     ("changes", "match"),
     [
@@ -202,6 +208,7 @@ def test_rings_of_sharpy_have_its_circulation_and_forces(revolutions: int) -> No
         ({"ages": [0.5, 2.0]}, "rise from 0"),
         ({"surfaces": []}, "none"),
         ({"surfaces": [np.zeros((3, 3))]}, "corners must be"),
+        ({"surfaces": [not_a_number_at_a_corner()]}, "surface 1: the corner in row 1, column 2"),
     ],
 )
 def test_what_cannot_be_used_is_named(changes, match) -> None:

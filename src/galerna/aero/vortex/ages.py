@@ -15,6 +15,7 @@ from galerna.contract import Array
 from galerna.errors import InputError
 from galerna.units import DEG
 
+MOST_ROWS = 100_000  #: of one wake; a default one has about a hundred
 SLOWEST_TURN = 0.05  #: tip speed over wind speed below which a rotor sheds like a wing
 
 
@@ -30,7 +31,8 @@ def growing_ages(
 
     Panels are ``step`` s wide up to the age ``near`` s; behind it each is ``growth`` times as
     wide as the one before, up to ``widest`` s. The last row lies at least at ``duration``.
-    Raises InputError for a step, duration or growth that makes no wake.
+    Raises InputError for a step, duration or growth that makes no wake, or one of more than
+    ``MOST_ROWS`` rows.
     """
     sound = 0.0 < step < inf and step <= duration < inf and growth >= 1.0 and widest >= step
     if not sound:
@@ -41,6 +43,12 @@ def growing_ages(
         )
     ages, width = [0.0], step
     while ages[-1] < duration * (1.0 - 1e-9):
+        if len(ages) > MOST_ROWS:
+            raise InputError(
+                "ages of the wake",
+                f"more than {MOST_ROWS} rows to the age of {duration:g} s",
+                "ask for a shorter wake or longer steps",
+            )
         if ages[-1] >= near * (1.0 - 1e-9) and len(ages) > 1:
             width = min(growth * width, widest)
         ages.append(ages[-1] + width)

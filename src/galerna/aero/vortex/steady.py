@@ -106,7 +106,10 @@ def solve_steady(
     Raises InputError for surfaces, winds or ages that cannot be used, and ConvergenceError where
     a free wake is not found.
     """
-    bodies = [s if isinstance(s, Surface) else _placed(s, axis) for s in surfaces]
+    bodies = [
+        s if isinstance(s, Surface) else _placed(f"surface {number}", s, axis)
+        for number, s in enumerate(surfaces, 1)
+    ]
     if not bodies:
         raise InputError("surfaces", "there are none", "give at least one")
     air = _wind(velocity)
@@ -134,10 +137,14 @@ def solve_steady(
     )
 
 
-def _placed(corners: ArrayLike, axis: RotorAxis | None) -> Surface:
+def _placed(name: str, corners: ArrayLike, axis: RotorAxis | None) -> Surface:
     corners = np.asarray(corners, dtype=float)
     if corners.ndim != 3 or corners.shape[2] != 3 or min(corners.shape[:2]) < 2:
-        raise InputError("surfaces", f"corners must be (m+1,n+1,3), found {corners.shape}")
+        raise InputError(name, f"corners must be (m+1,n+1,3), found {corners.shape}")
+    bad = np.argwhere(~np.isfinite(corners).all(axis=2))
+    if len(bad):
+        row, column = bad[0] + 1
+        raise InputError(name, f"the corner in row {row}, column {column} is not a finite number")
     if axis is None:
         return Surface.at_rest(corners)
     return Surface.turning(corners, axis.speed * axis.direction, axis.origin)
