@@ -428,3 +428,9 @@ class TestWakeSize:
     def test_growth_of_one_keeps_panels_equal(self):
         ages = self.size(wake_growth=1.0).ages
         np.testing.assert_allclose(np.diff(ages), ages[1], rtol=1e-9)
+
+
+def test_check_describes_a_lattice_and_times_no_step_of_a_huge_one():
+    small, huge = (dict(machine(**size).describe()) for size in ({}, {"spanwise_panels": 500}))
+    assert "ms to move the wake" in small["cost"]
+    assert "not measured" in huge["cost"]

@@ -11,11 +11,13 @@ from galerna.contract import Motion
 if TYPE_CHECKING:
     from galerna.aero.vortex.model import VortexLattice
 
+TIMED_PANELS = 100_000  #: of all surfaces and wakes: no step of a larger lattice is timed
+
 
 def describe_lattice(
     model: VortexLattice, motion: Motion, time_step: float
 ) -> Iterator[tuple[str, str]]:
-    """Pairs of heading and text about a model that has made no step; one step is timed.
+    """Pairs of heading and text about a model that has made no step; one step is timed if small.
 
     ``motion`` is that at time 0, ``time_step`` s.
     """
@@ -33,6 +35,9 @@ def describe_lattice(
     step = f"aerodynamic step {size.step:.4g} s, {steps} time step{'s' if steps > 1 else ''}"
     turning = 360.0 * size.revolutions / size.ages[-1]
     yield "wake", f"{step}, {turning * size.step:.3g} deg of a turn"
+    if model.wake_panels + blades * rows * strips > TIMED_PANELS:
+        yield "cost", f"not measured: more than {TIMED_PANELS} panels take long for every step"
+        return
     shedding, loading = time_of_a_step(model, motion, time_step)
     cost = shedding / size.step + loading / time_step
     each = f"{1e3 * shedding:.3g} ms to move the wake, {1e3 * loading:.3g} ms for the loads"
