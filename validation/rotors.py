@@ -34,7 +34,7 @@ LATTICE = VortexLatticeOptions(tower_influence=False)
 #: A smaller wake for long runs, with steps of 7.5 degrees: half the panels of the default
 BRISK = LATTICE.model_copy(
     update={"wake_revolutions": 5.0, "wake_near_deg": 60.0, "wake_growth": 1.15,
-            "wake_step_deg": 7.5}
+            "wake_widest_deg": 30.0, "wake_step_deg": 7.5}
 )  # fmt: skip
 
 

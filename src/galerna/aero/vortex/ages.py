@@ -64,7 +64,7 @@ def rotor_ages(
     diameters: float = 3.0,
     near_deg: float = 120.0,
     growth: float = 1.1,
-    widest_deg: float = 30.0,
+    widest_deg: float = 20.0,
 ) -> Array:
     """Ages (K+1,) s of a rotor's wake, from its speed rad/s, the wind m/s and the radius m.
 

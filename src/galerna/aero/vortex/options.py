@@ -130,7 +130,7 @@ class VortexLatticeOptions(_Block):
         "wake; 1 keeps all of them equal.",
     )
     wake_widest_deg: Annotated[float, Field(gt=0.0, le=60.0)] = Field(
-        default=30.0, description="Turn of the rotor that the longest wake panel spans."
+        default=20.0, description="Turn of the rotor that the longest wake panel spans."
     )
     wake_scheme: Literal["adams_bashforth", "heun", "euler"] = Field(
         default="adams_bashforth",
