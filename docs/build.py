@@ -1,7 +1,7 @@
 """Make everything that is generated here: ``python -m docs.build [PART ...]``.
 
-Parts: conventions, case, turbines, vortex_sections, vortex_wings, demo, validation, benchmarks; all
-where none is given.
+Parts: conventions, case, turbines, vortex_sections, vortex_wings, vortex_rotors, demo, validation,
+benchmarks; all where none is given.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from docs import (
     case_reference,
     conventions_figure,
     turbine_pages,
+    vortex_rotor_figures,
     vortex_section_pages,
     vortex_wing_figures,
 )
@@ -60,6 +61,7 @@ PARTS: dict[str, Callable[[], Path]] = {
     "turbines": turbine_pages.write,
     "vortex_sections": vortex_section_pages.write,
     "vortex_wings": vortex_wing_figures.draw,
+    "vortex_rotors": vortex_rotor_figures.draw,
     "demo": demo,
     "validation": validation,
     "benchmarks": benchmarks,

@@ -256,6 +256,13 @@ FUNCTIONS: dict[str, Callable[[], Path]] = {
 }
 
 
+def draw() -> Path:
+    """Draw all of them, which takes some twenty minutes."""
+    for function in FUNCTIONS.values():
+        function()
+    return FIGURES
+
+
 if __name__ == "__main__":
     for function in sys.argv[1:] or FUNCTIONS:
         print(FUNCTIONS[function]())
