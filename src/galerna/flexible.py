@@ -18,7 +18,7 @@ from galerna.structure.integrators import Integrator, Scheme, Tolerance, Trial
 from galerna.structure.pairs import Integers
 from galerna.structure.system import ARRAYS, Forces, State
 from galerna.structure.turbine import TurbineOptions, TurbineSystem, turbine_system
-from galerna.turbine.geometry import axis_positions, blade_frames
+from galerna.turbine.geometry import part_frames
 from galerna.turbine.model import Turbine
 
 
@@ -65,20 +65,9 @@ def _placed(
     width = np.where(right > left, span[right] - span[left], 1.0)
     fraction = np.where(right > left, (stations.span - span[left]) / width, 0.0)
     ends = np.stack([nodes[left], nodes[right]], axis=1)
-    return ends, fraction, *_described(turbine, system, stations)
-
-
-def _described(turbine: Turbine, system: TurbineSystem, stations: Stations) -> tuple[Array, Array]:
-    """Positions (n,3) and section axes (n,3,3) of the stations of an undeformed part."""
-    part, n = stations.part, len(stations)
     origin, axes = system.places[part]
-    if part.startswith("blade"):
-        position, rotation = blade_frames(turbine.blade, stations.span)
-        return origin + position @ axes.T, axes @ rotation
-    if part == "tower":
-        points = axis_positions(turbine.tower.axis_span, turbine.tower.axis, stations.span)
-        return points, np.tile(np.eye(3), (n, 1, 1))
-    return np.tile(origin, (n, 1)), np.tile(axes, (n, 1, 1))
+    position, rotation = part_frames(turbine, part, stations.span)
+    return ends, fraction, origin + position @ axes.T, axes @ rotation
 
 
 class FlexibleMachine:

@@ -16,7 +16,7 @@ from numba import njit
 from galerna.contract import Array, Channel, Loads, Motion, Stations
 from galerna.errors import InputError
 from galerna.signals import Signal, evaluate
-from galerna.turbine.geometry import axis_positions, blade_frames
+from galerna.turbine.geometry import part_frames
 from galerna.turbine.model import Turbine
 from galerna.units import DEG, RPM
 
@@ -172,19 +172,18 @@ def _geometry(turbine: Turbine, azimuth: float) -> Array:
 
 def _locate(turbine: Turbine, stations: Stations) -> tuple[int, Array, Array]:
     """The body of one part's stations, their origins (n,3) m and axes (n,3,3) on that body."""
-    part, n, top = stations.part, len(stations), turbine.tower.axis[-1]
-    aligned = np.tile(np.eye(3), (n, 1, 1))
+    part, top = stations.part, turbine.tower.axis[-1]
+    position, rotation = part_frames(turbine, part, stations.span)
     if part in ("nacelle", "hub"):
-        return {"nacelle": NACELLE, "hub": HUB}[part], np.zeros((n, 3)), aligned
+        return {"nacelle": NACELLE, "hub": HUB}[part], position, rotation
     if part == "tower":
-        points = axis_positions(turbine.tower.axis_span, turbine.tower.axis, stations.span)
-        return FIXED, points - top, aligned
+        return FIXED, position - top, rotation
     if part == "platform" and turbine.platform is not None:
-        return FIXED, np.tile(np.array(turbine.platform.reference_point) - top, (n, 1)), aligned
+        return FIXED, position + (np.array(turbine.platform.reference_point) - top), rotation
     blades = [f"blade{k + 1}" for k in range(turbine.number_of_blades)]
     if part not in blades:
         raise InputError("stations", f"the turbine {turbine.name!r} has no part {part!r}")
-    return BLADE + blades.index(part), *blade_frames(turbine.blade, stations.span)
+    return BLADE + blades.index(part), position, rotation
 
 
 class PrescribedMotion:

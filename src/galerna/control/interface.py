@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Protocol, runtime_checkable
 
@@ -59,10 +58,3 @@ class Controller(Protocol):
     """
 
     def demands(self, measured: Measurements) -> Demands: ...
-
-
-class Stateful(Protocol):
-    """A controller that can be saved and taken up again."""
-
-    def state(self) -> dict[str, np.ndarray]: ...
-    def restore(self, state: Mapping[str, np.ndarray]) -> None: ...

@@ -20,7 +20,6 @@ from galerna.contract import Array
 from galerna.control.pitch import PitchGains
 from galerna.control.torque import AboveRated
 from galerna.errors import InputError
-from galerna.turbine.model import Turbine
 
 NATURAL_FREQUENCY, DAMPING_RATIO = 0.6, 0.7  #: rad/s and 1: the NREL 5 MW report's choice
 
@@ -37,12 +36,6 @@ class Sensitivity:
     power: Array
     power_by_pitch: Array
     rotor_speed: float
-
-
-def drivetrain_inertia(turbine: Turbine, rotor_inertia: float) -> float:
-    """Inertia kg m2 of rotor (blades and hub) and generator about the low-speed shaft."""
-    drivetrain = turbine.drivetrain
-    return rotor_inertia + drivetrain.generator_inertia * drivetrain.gear_ratio**2
 
 
 def pitch_gains(

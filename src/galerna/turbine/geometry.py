@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from galerna.turbine.model import Array, Blade
+from galerna.turbine.model import Array, Blade, Turbine
 
 
 def axis_positions(axis_span: Array, axis: Array, span: Array) -> Array:
@@ -39,3 +39,16 @@ def blade_frames(blade: Blade, span: Array) -> tuple[Array, Array]:
     twist = np.interp(span, blade.shape.span, blade.shape.twist)
     tangent = axis_tangents(blade.axis_span, blade.axis, span)
     return axis_positions(blade.axis_span, blade.axis, span), section_rotations(tangent, twist)
+
+
+def part_frames(turbine: Turbine, part: str, span: Array) -> tuple[Array, Array]:
+    """Origins (n,3) m and axes (n,3,3) of a part's stations at ``span`` (n,), in its own axes.
+
+    A tower's own axes are the global ones; rigid bodies have all stations in their origin.
+    """
+    if part.startswith("blade"):
+        return blade_frames(turbine.blade, span)
+    aligned = np.tile(np.eye(3), (len(span), 1, 1))
+    if part == "tower":
+        return axis_positions(turbine.tower.axis_span, turbine.tower.axis, span), aligned
+    return np.zeros((len(span), 3)), aligned

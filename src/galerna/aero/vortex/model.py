@@ -11,7 +11,6 @@ from galerna.aero.vortex import channels
 from galerna.aero.vortex.blades import BladeLattice, blade_lattice
 from galerna.aero.vortex.channels import Frames, StripState
 from galerna.aero.vortex.cores import VortexCore
-from galerna.aero.vortex.field import InducedField
 from galerna.aero.vortex.lattice import Lattice
 from galerna.aero.vortex.mirror import MirrorPlane
 from galerna.aero.vortex.options import VortexLatticeOptions
@@ -194,9 +193,7 @@ class VortexLattice:
         """
         points = np.asarray(points, dtype=float)
         wind = self.inflow.velocity(points.reshape(-1, 3), self._time).reshape(points.shape)
-        settings = self._flow.options
-        field = InducedField(self.sheets(), error=settings.tree_error, mirror=settings.mirror)
-        return wind + field.velocity(points)
+        return wind + self._flow.induced_velocity(points)
 
     def sheets(self) -> list[Sheet]:
         """The wake of each blade, then its bound vortices, after the accepted step."""

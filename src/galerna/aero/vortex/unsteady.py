@@ -194,7 +194,11 @@ class UnsteadyLattice:
         """Velocity (...,3) m/s of wind and vortices at points (...,3) m, after an accepted step."""
         points = np.asarray(points, dtype=float)
         wind = self.inflow.velocity(points.reshape(-1, 3), time).reshape(points.shape)
-        return wind + self.clock.field(self.sheets()).velocity(points)
+        return wind + self.induced_velocity(points)
+
+    def induced_velocity(self, points: Array) -> Array:
+        """Velocity (...,3) m/s of all vortices at points (...,3) m, after an accepted step."""
+        return self.clock.field(self.sheets()).velocity(points)
 
     def state(self) -> dict[str, np.ndarray]:
         """Everything the next step depends on, as arrays; empty before the first step."""
