@@ -25,7 +25,7 @@ def doubts(
     """One sentence for each thing in doubt; ``mean_wind`` m/s is at the hub."""
     yield from _about_speed(turbine, operation.rotor_speed.value, case.time_step_s)
     yield from _about_pitch(np.concatenate([signal.value for signal in operation.pitch]) / DEG)
-    if case.operation.operating_point == "steady":
+    if case.start.operating_point == "steady":
         yield from _about_wind(turbine, mean_wind)
     steps = case.duration_s / case.time_step_s
     if abs(steps - round(steps)) > 1e-6 * steps:

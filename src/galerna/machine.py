@@ -22,7 +22,7 @@ from galerna.inflow.build import BuiltInflow, build
 from galerna.inflow.sizing import RotorExtent
 from galerna.kinematics import PrescribedMotion, PrescribedOperation
 from galerna.signals import Signal
-from galerna.simulation import Callback, Simulation
+from galerna.simulation import Callback, Commander, Simulation, Structure
 from galerna.turbine.model import Turbine
 from galerna.units import DEG, RPM
 
@@ -108,11 +108,27 @@ def build_machine(case: LoadedCase) -> Machine:
         operation = _operation(case, turbine, wind.mean_speed)
     with case.blame("aerodynamics"):
         models = _load_models(case, turbine, wind, operation)
-    with case.blame("operation"):
-        structure = PrescribedMotion(turbine, operation, [m.stations for m in models.values()])
+    stations = [model.stations for model in models.values()]
+    structure: Structure
+    commander: Commander | None = None
+    if settings.moves:
+        from galerna.coupling.build import control_loop, moving_machine
+
+        with case.blame("structure"):
+            structure = moving_machine(case, turbine, operation, stations)
+        if settings.control is not None:
+            with case.blame("control"):
+                commander = control_loop(case, turbine, structure, wind.field.hub_velocity)
+    else:
+        with case.blame("operation"):
+            structure = PrescribedMotion(turbine, operation, stations)
     with case.blame("time_step_s"):
         simulation = Simulation(
-            structure, models, settings.time_step_s, probes={"wind": HubWindProbe(wind.field)}
+            structure,
+            models,
+            settings.time_step_s,
+            commander=commander,
+            probes={"wind": HubWindProbe(wind.field)},
         )
     channels = _chosen_channels(case, simulation)
     return Machine(case, turbine, wind, operation, simulation, channels)
@@ -185,7 +201,7 @@ def _vortex_lattice(
 
 def _operation(case: LoadedCase, turbine: Turbine, wind_speed: float) -> PrescribedOperation:
     """Rotor speed, pitch and yaw of a case in SI; what is not given comes from the turbine."""
-    operation, blades = case.case.operation, turbine.number_of_blades
+    operation, blades = case.case.start, turbine.number_of_blades
     speed, pitch = operation.rotor_speed_rpm, operation.pitch_deg
     if operation.operating_point == "steady" and (speed is None or pitch is None):
         point = _steady_point(case, turbine, wind_speed)

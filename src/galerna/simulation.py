@@ -59,6 +59,15 @@ class Structure(Part, Stateful, Protocol):
     def reject(self, time: float) -> None: ...
 
 
+class Commander(Part, Stateful, Protocol):
+    """What commands the machine: a controller with its actuators.
+
+    ``command`` reads the accepted state at ``time`` s and says what happens in the next ``dt`` s.
+    """
+
+    def command(self, time: float, dt: float) -> None: ...
+
+
 class Callback:
     """What happens beside the simulation: saving, reporting, stopping."""
 
@@ -75,11 +84,11 @@ class Callback:
 class Simulation:
     """A structure under its load models, marched through time.
 
-    ``load_models`` stand in the order of ``structure.motions``; ``probes`` have
-    channels and nothing else. Where a step of ``time_step`` s finds no balance within
-    ``iterations``, it is halved, ``halvings`` times at most. Raises InputError for a
-    step larger than a model permits or for two channels of one name, and
-    ConvergenceError where a step fails.
+    ``load_models`` stand in the order of ``structure.motions``; the ``commander`` is asked
+    once before every step; ``probes`` have channels and nothing else. Where a step of
+    ``time_step`` s finds no balance within ``iterations``, it is halved, ``halvings`` times
+    at most. Raises InputError for a step larger than a model permits or for two channels of
+    one name, and ConvergenceError where a step fails.
     """
 
     def __init__(
@@ -88,6 +97,7 @@ class Simulation:
         load_models: Mapping[str, LoadModel],
         time_step: float,
         *,
+        commander: Commander | None = None,
         probes: Mapping[str, Probe] | None = None,
         iterations: int = 30,
         halvings: int = 3,
@@ -98,8 +108,14 @@ class Simulation:
         self.steps = 0  #: accepted so far
         self.stopped = ""  #: why the run is to end early
         self.probes = dict(probes or {})
-        self._parts: dict[str, Part] = {"structure": structure, **self.load_models}
-        self._stateful: dict[str, Stateful] = {"structure": structure, **self.load_models}
+        self.commander = commander
+        commanding = {} if commander is None else {"control": commander}
+        self._parts: dict[str, Part] = {"structure": structure, **self.load_models, **commanding}
+        self._stateful: dict[str, Stateful] = {
+            "structure": structure,
+            **self.load_models,
+            **commanding,
+        }
         self._models = tuple(
             (name, model, motion)
             for (name, model), motion in zip(
@@ -137,6 +153,8 @@ class Simulation:
 
     def advance(self) -> None:
         """One step of ``time_step``, in smaller ones where it does not converge."""
+        if self.commander is not None:
+            self.commander.command(self.time, self.time_step)
         self._step(self.time, self.time_step, self.halvings)
         self.steps += 1
 

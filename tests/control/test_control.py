@@ -7,7 +7,7 @@ import pytest
 
 from galerna import turbine as turbines
 from galerna.control.actuators import PitchActuator
-from galerna.control.baseline import BaselineController, BaselineOptions
+from galerna.control.baseline import BaselineController, BaselineSettings
 from galerna.control.interface import Measurements
 from galerna.control.pitch import CollectivePitch, LowPass, PitchGains
 from galerna.control.torque import torque_curve
@@ -126,7 +126,7 @@ def test_actuator_keeps_its_limits() -> None:
 
 
 def test_an_emergency_stop_feathers_without_torque() -> None:
-    options = BaselineOptions(events=((5.0, "emergency_stop"),))
+    options = BaselineSettings(events=((5.0, "emergency_stop"),))
     controller = BaselineController(NREL, options)
     before = controller.demands(measured(4.9, 122.9, 0.2))
     after = controller.demands(measured(5.0, 122.9, 0.2))
@@ -146,4 +146,4 @@ def test_a_controller_resumes_with_the_same_demands() -> None:
 
 def test_an_unknown_mode_is_named() -> None:
     with pytest.raises(InputError, match="emergency_stop"):
-        BaselineOptions(events=((1.0, "emergency"),))
+        BaselineSettings(events=((1.0, "emergency"),))

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import (
     BaseModel,
+    BeforeValidator,
     ConfigDict,
     Discriminator,
     Field,
@@ -20,7 +21,9 @@ from pydantic import (
 
 from galerna.aero.bem.options import BemOptions
 from galerna.aero.vortex.options import VortexLatticeOptions
+from galerna.control.options import Control
 from galerna.inflow.options import InflowOptions
+from galerna.structure.options import StructureOptions
 from galerna.units import AIR_DENSITY
 
 DEFAULT_INTERVAL = 0.1  #: s
@@ -82,8 +85,40 @@ Aerodynamics = Annotated[
 ]
 
 
+def _structure(value: Any) -> Any:
+    """``flexible`` and ``rigid`` stand for a whole block."""
+    whole = {"flexible": StructureOptions(), "rigid": StructureOptions.rigid()}
+    return whole.get(value, value) if isinstance(value, str) else value
+
+
+def _control(value: Any) -> Any:
+    """A model's name stands for its block; a block without a model is the baseline's."""
+    if isinstance(value, str):
+        return {"model": value}
+    if isinstance(value, dict) and "model" not in value:
+        return {"model": "baseline", **value}
+    return value
+
+
+class BaseMotion(Block):
+    """How the foot of the tower, or the platform's reference point, is made to move.
+
+    A number stands for an offset that stays.
+    """
+
+    surge_m: OverTime = Field(0.0, description="Along x.")
+    sway_m: OverTime = Field(0.0, description="Along y.")
+    heave_m: OverTime = Field(0.0, description="Along z.")
+    roll_deg: OverTime = Field(0.0, description="About x, the last of the three turns.")
+    pitch_deg: OverTime = Field(0.0, description="About y.")
+    yaw_deg: OverTime = Field(0.0, description="About z, the first of the three turns.")
+
+
 class Operation(Block):
-    """How the machine is run. Every angle and speed is a number, or a series over time."""
+    """How the machine is run. Every angle and speed is a number, or a series over time.
+
+    With a controller this is how the machine starts.
+    """
 
     operating_point: Literal["given", "steady"] = Field(
         "given",
@@ -144,8 +179,41 @@ class Case(Block):
         BemOptions(), description="The aerodynamic model of the rotor; `model` says which."
     )
     tower_and_nacelle_drag: bool = Field(True, description="Drag of the tower and the nacelle.")
-    operation: Operation = Field(description="How the machine is run.")
+    structure: Annotated[StructureOptions | None, BeforeValidator(_structure)] = Field(
+        None,
+        description="How the machine moves: `flexible`, `rigid`, or a block that says it of each "
+        "part. Left out, nothing bends, and without a controller all motion is prescribed.",
+    )
+    base_motion: BaseMotion | None = Field(
+        None, description="Prescribed motion of the tower's foot or of the platform."
+    )
+    control: Annotated[Control | None, BeforeValidator(_control)] = Field(
+        None,
+        description="The controller: `baseline`, `discon`, `python`, `external`, or a block. "
+        "Left out, `operation` prescribes rotor speed, pitch and yaw.",
+    )
+    operation: Operation | None = Field(
+        None,
+        description="How the machine is run; with a controller, how it starts: by default at the "
+        "controller's operating point in the mean wind.",
+    )
     outputs: Outputs = Field(Outputs(), description="What is recorded.")
+
+    @model_validator(mode="after")
+    def _is_run(self) -> Self:
+        if self.operation is None and self.control is None:
+            raise ValueError("give control, such as `control: baseline`, or operation")
+        return self
+
+    @property
+    def moves(self) -> bool:
+        """Whether loads move the machine; otherwise all of its motion is prescribed."""
+        return not (self.structure is None and self.control is None and self.base_motion is None)
+
+    @property
+    def start(self) -> Operation:
+        """How the machine is run, or starts where a controller runs it."""
+        return self.operation or Operation(operating_point="steady")
 
     @property
     def record_every(self) -> int:

@@ -32,7 +32,7 @@ STOP_PITCH_RATE = 2.0 * DEG  #: per second, towards feather in a normal stop
 
 
 @dataclass(frozen=True)
-class BaselineOptions:
+class BaselineSettings:
     """What differs between users of one turbine; ``gains`` replace the turbine's schedule.
 
     ``events`` (time s, mode) switch the mode; ``fine_pitch`` rad is the lowest angle in
@@ -59,7 +59,7 @@ class BaselineController:
     """
 
     turbine: Turbine
-    options: BaselineOptions = field(default_factory=BaselineOptions)
+    options: BaselineSettings = field(default_factory=BaselineSettings)
 
     def __post_init__(self) -> None:
         control, drivetrain = self.turbine.control, self.turbine.drivetrain

@@ -22,12 +22,13 @@ from .assembly import GROUND, Structure
 from .beam import Beam, Curve, discretise
 from .bodies import moved, rigid_body
 from .frames import rotation_about
-from .joints import Angle, hinge
+from .joints import Angle, Path, hinge, on_path, turning
 from .modes import natural_modes
 from .pairs import Integers
 from .system import System
 
 BLADE_ELEMENTS, TOWER_ELEMENTS = 20, 10
+FOOT_MASS = 1.0  #: kg and kg m2, of a foot that is moved
 SMALL_ARM = 0.1  #: m, radius of gyration where the data give no moment of inertia
 
 
@@ -37,8 +38,10 @@ class TurbineOptions:
 
     ``blade_elements`` and ``tower_elements`` 0 make the part rigid. ``rotor`` is "free"
     (a torque drives it), "locked", or a speed rad/s as a function of time; ``pitch`` rad and
-    ``azimuth`` rad are the first shape's, ``pitch_motion`` rad turns the blades on from
-    there as functions of time. Without ``flexible_shaft`` hub and generator are one.
+    ``azimuth`` rad are the first shape's. ``rotor_motion``, ``pitch_motion`` and ``yaw_motion``
+    rad turn rotor, blades and nacelle on from there as functions of time. ``base_motion`` moves
+    the tower's foot or the platform, which is free without it; a foot stands still. Without
+    ``flexible_shaft`` hub and generator are one.
     """
 
     blade_elements: int = BLADE_ELEMENTS
@@ -48,7 +51,10 @@ class TurbineOptions:
     rotor: Literal["free", "locked"] | Angle = "free"
     azimuth: float = 0.0
     pitch: float = 0.0
+    rotor_motion: Angle | None = None
     pitch_motion: tuple[Angle, ...] | None = None
+    yaw_motion: Angle | None = None
+    base_motion: Path | None = None
     gravity: tuple[float, float, float] = (0.0, 0.0, -9.80665)
 
     def __post_init__(self) -> None:
@@ -110,15 +116,22 @@ class _Builder:
         )
 
     def _foundation(self) -> None:
-        platform = self.turbine.platform
+        platform, path = self.turbine.platform, self.options.base_motion
         self.base = GROUND
         if platform is None:
+            if path is not None:
+                foot = self.turbine.tower.axis[0]
+                body = rigid_body(FOOT_MASS, None, FOOT_MASS * np.ones(3))
+                self.base = self.structure.frame("foot", foot, mass=body)
+                self.structure.join(on_path("base", self.base, path))
             return
         center = np.subtract(platform.center_of_mass, platform.reference_point)
         body = rigid_body(platform.mass, center, np.array(platform.inertia))
         self.base = self.structure.frame("platform", np.array(platform.reference_point), mass=body)
         place = np.array(platform.reference_point)
         self._note("platform", ["platform"], np.zeros(1), place, np.eye(3))
+        if path is not None:
+            self.structure.join(on_path("base", self.base, path))
 
     def _tower(self) -> None:
         tower = self.turbine.tower
@@ -150,10 +163,13 @@ class _Builder:
         body += rigid_body(nacelle.yaw_bearing_mass)
         s.frame("nacelle", self.top_position, mass=body)
         spring = nacelle.yaw_stiffness if self.options.flexible_yaw else 0.0
-        s.join(
-            hinge("yaw bearing", self.top, "nacelle", self.top_position, np.array([0.0, 0, 1]),
-                  angle=None if spring else _still, stiffness=spring, damping=nacelle.yaw_damping)
+        bearing = hinge(
+            "yaw bearing", self.top, "nacelle", self.top_position, np.array([0.0, 0, 1]),
+            angle=None if spring else _still, stiffness=spring, damping=nacelle.yaw_damping,
         )  # fmt: skip
+        if self.options.yaw_motion is not None:
+            bearing = replace(bearing, placement=turning(self.options.yaw_motion))
+        s.join(bearing)
         self._note("nacelle", ["nacelle"], np.zeros(1), self.top_position, np.eye(3))
 
     def _hub(self) -> None:
@@ -191,6 +207,8 @@ class _Builder:
     def _turning(self) -> tuple[Angle | None, Angle | None]:
         """Angle and speed of the main bearing as functions of time, where it is driven."""
         rotor = self.options.rotor
+        if self.options.rotor_motion is not None:
+            return self.options.rotor_motion, None
         if rotor == "free":
             return None, None
         if rotor == "locked":

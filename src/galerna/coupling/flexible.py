@@ -11,31 +11,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from galerna.contract import Array, Channel, Loads, Stations
+from galerna.contract import Array, Loads, Stations
+from galerna.coupling.paths import StepPath
 from galerna.errors import InputError, did_you_mean
+from galerna.kinematics import CHANNELS
 from galerna.structure.attachment import Attachment
+from galerna.structure.frames import rotation_about
 from galerna.structure.integrators import Integrator, Scheme, Tolerance, Trial
+from galerna.structure.joints import Angle
 from galerna.structure.pairs import Integers
 from galerna.structure.system import ARRAYS, Forces, State
 from galerna.structure.turbine import TurbineOptions, TurbineSystem, turbine_system
 from galerna.turbine.geometry import part_frames
 from galerna.turbine.model import Turbine
-
-
-class PitchPath:
-    """A blade's pitch angle over one step, rad: straight from where it was to where it goes."""
-
-    def __init__(self, angle: float) -> None:
-        self.start = self.end = angle
-        self.time, self.duration = 0.0, 0.0
-
-    def __call__(self, time: float) -> float:
-        share = (time - self.time) / self.duration if self.duration else 1.0
-        return self.start + min(max(share, 0.0), 1.0) * (self.end - self.start)
-
-    def go(self, angle: float, time: float, duration: float) -> None:
-        """Reach ``angle`` rad ``duration`` s after ``time``."""
-        self.start, self.end, self.time, self.duration = self.end, angle, time, duration
 
 
 def attach(turbine: Turbine, system: TurbineSystem, group: Sequence[Stations]) -> Attachment:
@@ -73,11 +61,12 @@ def _placed(
 class FlexibleMachine:
     """A turbine's structure under its load models; see ``simulation.Structure``.
 
-    ``stations`` holds the stations of every load model. The blades pitch along ``pitch``, one
-    path each. Raises InputError for a part that the turbine does not have.
+    ``stations`` holds the stations of every load model. The blades pitch as
+    ``options.pitch_motion`` says, or are moved by ``go_pitch``. Raises InputError for a part
+    that the turbine does not have.
     """
 
-    channels: tuple[Channel, ...] = ()
+    channels = CHANNELS
 
     def __init__(
         self,
@@ -88,10 +77,14 @@ class FlexibleMachine:
         scheme: Scheme | None = None,
         tolerance: Tolerance | None = None,
     ) -> None:
-        self.coordinates: Mapping[str, Array] = {}
-        self.pitch = tuple(PitchPath(0.0) for _ in range(turbine.number_of_blades))
-        options = replace(options or TurbineOptions(), pitch_motion=self.pitch)
-        self.parts = turbine_system(turbine, options)
+        options = options or TurbineOptions()
+        blades = turbine.number_of_blades
+        self.coordinates: Mapping[str, Array] = {"blade": np.arange(1.0, blades + 1.0)}
+        self._pitch_offset = options.pitch
+        self.pitch: tuple[Angle, ...] = options.pitch_motion or tuple(
+            StepPath(0.0) for _ in range(blades)
+        )
+        self.parts = turbine_system(turbine, replace(options, pitch_motion=self.pitch))
         self.system = self.parts.system
         self.integrator = Integrator(
             self.system, scheme or Scheme.generalized_alpha(), tolerance or Tolerance()
@@ -99,6 +92,11 @@ class FlexibleMachine:
         self._riders = [attach(turbine, self.parts, group) for group in stations]
         self.motions = tuple(riders.motion for riders in self._riders)
         self._forces = Forces.none(len(self.system))
+        names = self.system.names
+        self._nacelle, self._hub = names.index("nacelle"), names.index("hub")
+        self._driven = names.index("generator") if "generator" in names else self._hub
+        self._tilted = rotation_about(1, turbine.nacelle.tilt)
+        self.shaft_torque = 0.0  #: N m that drives the low-speed shaft; a generator's is negative
         self.start(self.system.initial_state())
 
     def start(self, state: State) -> None:
@@ -108,7 +106,46 @@ class FlexibleMachine:
 
     def set_shaft_torque(self, torque: float) -> None:
         """Torque N m that drives the low-speed shaft; a generator's is negative."""
+        self.shaft_torque = torque
         self.system.set_torque("main bearing", torque)
+
+    def go_pitch(self, pitch: Array, time: float, dt: float) -> None:
+        """Pitch the blades (b,) rad within the ``dt`` s after ``time``."""
+        for path, angle in zip(self.pitch, pitch, strict=True):
+            assert isinstance(path, StepPath), "the pitch is prescribed"
+            path.go(angle - self._pitch_offset, time, dt)
+
+    def pitch_angles(self, time: float) -> Array:
+        """Pitch (b,) rad at a time in s."""
+        return np.array([self._pitch_offset + path(time) for path in self.pitch])
+
+    @property
+    def rotor_speed(self) -> float:
+        """Speed rad/s of the hub in the nacelle."""
+        return self._turning_rate(self._hub)
+
+    @property
+    def drive_speed(self) -> float:
+        """Speed rad/s of the generator in the nacelle, at the low-speed shaft."""
+        return self._turning_rate(self._driven)
+
+    @property
+    def azimuth(self) -> float:
+        """Azimuth rad of blade 1, from 0 to 2 pi."""
+        R = self.accepted.rotation
+        turned = (R[self._nacelle] @ self._tilted).T @ R[self._hub]
+        return float(np.arctan2(turned[2, 1], turned[1, 1]) % (2.0 * np.pi))
+
+    @property
+    def yaw(self) -> float:
+        """Yaw rad of the nacelle, with that of the tower's top."""
+        forward = self.accepted.rotation[self._nacelle][:, 0]
+        return float(np.arctan2(forward[1], forward[0]))
+
+    def _turning_rate(self, frame: int) -> float:
+        R, v = self.accepted.rotation, self.accepted.velocity
+        axis = R[self._nacelle] @ self._tilted[:, 0]
+        return float(axis @ (R[frame] @ v[frame, 3:] - R[self._nacelle] @ v[self._nacelle, 3:]))
 
     def predict(self, time: float, dt: float) -> None:
         """Begin a step of ``dt`` s from the accepted state."""
@@ -139,15 +176,26 @@ class FlexibleMachine:
 
     def record(self) -> Mapping[str, float | Array]:
         """The channels of the accepted state."""
-        return {}
+        return {
+            "rotor_speed": self.rotor_speed,
+            "azimuth": self.azimuth,
+            "pitch": self.pitch_angles(self.accepted.time),
+            "yaw": self.yaw,
+        }
 
     def state(self) -> dict[str, np.ndarray]:
         """All that the next step depends on."""
         arrays = {name: getattr(self.accepted, name).copy() for name in ARRAYS}
-        return {"time": np.array(self.accepted.time), **arrays}
+        paths = [path.state() for path in self.pitch if isinstance(path, StepPath)]
+        commands = {"shaft_torque": np.array(self.shaft_torque), "pitch_paths": np.array(paths)}
+        return {"time": np.array(self.accepted.time), **arrays, **commands}
 
     def restore(self, state: Mapping[str, np.ndarray]) -> None:
         """Take ``state`` back."""
+        self.set_shaft_torque(float(state["shaft_torque"]))
+        moved = [path for path in self.pitch if isinstance(path, StepPath)]
+        for path, saved in zip(moved, state["pitch_paths"], strict=True):
+            path.restore(saved)
         self.start(State(float(state["time"]), *(state[name].copy() for name in ARRAYS)))
 
     def _follow(self, state: State) -> None:

@@ -7,8 +7,8 @@ import pytest
 
 from galerna import turbine as turbines
 from galerna.contract import Loads, Stations
+from galerna.coupling.flexible import FlexibleMachine
 from galerna.errors import InputError
-from galerna.flexible import FlexibleMachine
 from galerna.kinematics import PrescribedMotion, PrescribedOperation
 from galerna.signals import Signal
 from galerna.simulation import Simulation

@@ -1,0 +1,1 @@
+"""Wind, structure, drivetrain and controller made one machine."""
