@@ -26,15 +26,25 @@ class InputError(GalernaError):
         super().__init__(f"{where}: {what}" + (f"\n  {hint}" if hint else ""))
 
 
-class ConvergenceError(GalernaError):
-    """A solution was not found; says at which time and in which part."""
-
-    exit_code = 3
+class SimulationError(GalernaError):
+    """A simulation cannot go on: where, at which time in s, what, and what to do."""
 
     def __init__(self, where: str, what: str, hint: str = "", time: float | None = None) -> None:
         self.where, self.what, self.hint, self.time = where, what, hint, time
         at = "" if time is None else f" at t = {time:.6g} s"
         super().__init__(f"{where}{at}: {what}" + (f"\n  {hint}" if hint else ""))
+
+
+class ConvergenceError(SimulationError):
+    """A solution was not found; says at which time and in which part."""
+
+    exit_code = 3
+
+
+class ControllerError(SimulationError):
+    """A controller that the user brought failed: it crashed, hung or asked for the impossible."""
+
+    exit_code = 4
 
 
 def did_you_mean(name: str, valid: Iterable[str]) -> str:

@@ -16,8 +16,10 @@ class Measurements:
 
     ``generator_speed`` is at the generator's own shaft, ``generator_torque`` N m what acts there
     now. ``pitch`` (b,) per blade. ``yaw_error`` is the nacelle's yaw minus the wind's direction.
-    ``root_moments`` (b,2) N m out of plane and in plane at the blades' roots;
-    ``tower_top_acceleration`` (3,) m/s2 in nacelle axes; ``platform`` (6,) m and rad.
+    ``root_moments`` (b,2) N m out of plane and in plane at the blades' roots, positive as thrust
+    and driving torque bend the blades; ``tower_top_acceleration`` (3,) m/s2 and
+    ``nacelle_angular_acceleration`` (3,) rad/s2 in nacelle axes; ``platform`` (6,) m and rad with
+    its velocity and acceleration.
     """
 
     time: float
@@ -33,6 +35,9 @@ class Measurements:
     root_moments: Array = field(default_factory=lambda: np.zeros((3, 2)))
     tower_top_acceleration: Array = field(default_factory=lambda: np.zeros(3))
     platform: Array = field(default_factory=lambda: np.zeros(6))
+    platform_velocity: Array = field(default_factory=lambda: np.zeros(6))
+    platform_acceleration: Array = field(default_factory=lambda: np.zeros(6))
+    nacelle_angular_acceleration: Array = field(default_factory=lambda: np.zeros(3))
 
 
 @dataclass(slots=True)
