@@ -127,7 +127,8 @@ def _coned(turbine: Turbine, position: Array) -> tuple[Array, Array]:
     return np.hypot(c * outwards + s * x, y), c * x - s * outwards
 
 
-def _rotor_inertia(turbine: Turbine) -> float | None:
+def rotor_inertia(turbine: Turbine) -> float | None:
+    """Inertia kg m2 of blades and hub about the shaft; None where the blades have no mass."""
     if (points := _blade(turbine)) is None:
         return None
     mass, position = points
@@ -191,7 +192,7 @@ QUANTITIES: dict[str, tuple[str, Callable[[Turbine], float | None]]] = {
     "blade_center_of_mass": ("m", _blade_center),
     "hub_mass": ("kg", lambda t: t.hub.mass),
     "rotor_mass": ("kg", _rotor_mass),
-    "rotor_inertia": ("kg m2", _rotor_inertia),
+    "rotor_inertia": ("kg m2", rotor_inertia),
     "nacelle_mass": ("kg", lambda t: t.nacelle.mass),
     "nacelle_yaw_inertia": ("kg m2", lambda t: t.nacelle.yaw_inertia),
     "rotor_nacelle_mass": ("kg", _rotor_nacelle_mass),

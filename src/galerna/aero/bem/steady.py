@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 AZIMUTHS = 8  #: per sector of one blade, where the wind is askew
 ASKEW = 1e-9  #: share of the wind in the rotor plane that counts as askew
 PITCH_TOLERANCE = 1e-7  #: rad
+AT_ONCE = 1e-9  #: s, in which no wake changes
 
 
 @dataclass(frozen=True)
@@ -59,11 +60,11 @@ class SteadyRotor:
     ) -> None:
         require_turbine(turbine)
         self.turbine, self.air_density, self.yaw_error = turbine, air_density, yaw_error
-        quasi_steady = (options or BemOptions()).model_copy(
-            update={"quasi_steady": True, "tower_influence": False}
-        )
         self._model = BladeElementMomentum(
-            turbine, UniformWind(np.zeros(3)), air_density=air_density, options=quasi_steady
+            turbine,
+            UniformWind(np.zeros(3)),
+            air_density=air_density,
+            options=steady_options(options),
         )
         self._not_started = self._model.state()
 
@@ -72,15 +73,25 @@ class SteadyRotor:
         """Stations (n,) m from the shaft along the blade."""
         return self._model.coordinates["radius"]
 
-    def at(self, wind_speed: float, rotor_speed: float, pitch: float) -> dict[str, Array]:
-        """Channels of the model, means over the azimuth and the blades; SI and rad."""
+    def at(
+        self,
+        wind_speed: float,
+        rotor_speed: float,
+        pitch: float,
+        wake_pitch: float | None = None,
+    ) -> dict[str, Array]:
+        """Channels of the model, means over the azimuth and the blades; SI and rad.
+
+        With ``wake_pitch`` rad the induced velocities are those of that pitch angle: what the
+        blades see at once after they have pitched from there, while the wake is still the old.
+        """
         wind = wind_in_shaft_axes(self.turbine, wind_speed, self.yaw_error)
         self._model.inflow = UniformWind(wind)
-        self._model.restore(self._not_started)
         askew = np.hypot(wind[1], wind[2]) > ASKEW * np.linalg.norm(wind)
         sector = 2.0 * np.pi / self.turbine.number_of_blades
         azimuths = sector * np.arange(AZIMUTHS) / AZIMUTHS if askew else np.zeros(1)
-        records = [self._record(azimuth, rotor_speed, pitch) for azimuth in azimuths]
+        before = pitch if wake_pitch is None else wake_pitch
+        records = [self._record(azimuth, rotor_speed, pitch, before) for azimuth in azimuths]
         means = {
             name: np.mean([np.asarray(record[name]) for record in records], axis=0)
             for name in records[0]
@@ -88,14 +99,28 @@ class SteadyRotor:
         return {name: v.mean(axis=0) if v.ndim else v for name, v in means.items()}
 
     def _record(
-        self, azimuth: float, rotor_speed: float, pitch: float
+        self, azimuth: float, rotor_speed: float, pitch: float, wake_pitch: float
     ) -> Mapping[str, float | Array]:
         model = self._model
-        motion = rigid_rotor_motion(self.turbine, model.sections, azimuth, rotor_speed, pitch)
-        model.begin_step(0.0, 1.0, motion)
-        model.loads(1.0, motion)
-        model.end_step(1.0, motion)
+        place = self.turbine, model.sections, azimuth, rotor_speed
+        model.restore(self._not_started)
+        model.begin_step(0.0, AT_ONCE, rigid_rotor_motion(*place, wake_pitch))
+        motion = rigid_rotor_motion(*place, pitch)
+        model.loads(AT_ONCE, motion)
+        model.end_step(AT_ONCE, motion)
         return model.record()
+
+
+def steady_options(options: BemOptions | None) -> BemOptions:
+    """Options of a model without tower whose only memory is its wake."""
+    return (options or BemOptions()).model_copy(
+        update={
+            "quasi_steady": False,
+            "dynamic_inflow": "oye",
+            "unsteady_airfoil": "none",
+            "tower_influence": False,
+        }
+    )
 
 
 def steady_rotor(
