@@ -7,7 +7,16 @@ import numpy as np
 import pytest
 
 from galerna.errors import InputError
-from validation.framework import Case, Check, as_records, page, run_case, select, write_json
+from validation.framework import (
+    Case,
+    Check,
+    NotRunError,
+    as_records,
+    page,
+    run_case,
+    select,
+    write_json,
+)
 
 
 def check(value, tolerance=0.1, relative=True):
@@ -35,6 +44,17 @@ def test_an_error_in_a_case_is_a_failed_outcome_with_its_text():
     assert "no such polar" in outcome.error
     assert as_records([outcome])[0]["passed"] is False
     assert "no such polar" in page([outcome])
+
+
+def test_a_case_that_lacks_another_program_is_left_out_and_says_so():
+    def lacking():
+        raise NotRunError("needs the package rosco")
+
+    outcome = run_case(Case("lacking", "machine", "Lacking", lacking, 1))
+    assert not outcome.failed
+    (record,) = as_records([outcome])
+    assert (record["passed"], record["source"]) == (None, "needs the package rosco")
+    assert "Left out: needs the package rosco" in page([outcome])
 
 
 def test_selection_by_group_or_name_and_a_misspelt_one_is_answered():

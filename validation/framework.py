@@ -3,7 +3,8 @@
 A case is a function that returns ``Check``s. A module lists its cases in
 ``CASES``; ``validation/__init__.py`` lists the modules. Tolerances stand in the
 code, with their reason, before the case runs. A check without a tolerance is
-shown and not judged.
+shown and not judged. A case that cannot run here, for want of another program, raises
+``NotRunError`` with the reason.
 """
 
 from __future__ import annotations
@@ -17,6 +18,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from galerna.errors import InputError, did_you_mean
+
+
+class NotRunError(Exception):
+    """A case needs what is not installed here; says what, and how to get it."""
 
 
 @dataclass(frozen=True)
@@ -73,12 +78,13 @@ class Case:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a case gave: its checks, or the error that stopped it."""
+    """What a case gave: its checks, or the error that stopped it, or why it was left out."""
 
     case: Case
     checks: tuple[Check, ...]
     seconds: float
     error: str = ""
+    left_out: str = ""
 
     @property
     def failed(self) -> bool:
@@ -98,11 +104,15 @@ def select(cases: Sequence[Case], names: Iterable[str]) -> list[Case]:
 def run_case(case: Case) -> Outcome:
     """Run one case; an error in it is an outcome, not the end of the others."""
     start = time.perf_counter()
+    checks: tuple[Check, ...] = ()
+    error = left_out = ""
     try:
-        checks, error = tuple(case.run()), ""
+        checks = tuple(case.run())
+    except NotRunError as reason:
+        left_out = str(reason)
     except Exception:
-        checks, error = (), traceback.format_exc()
-    return Outcome(case, checks, time.perf_counter() - start, error)
+        error = traceback.format_exc()
+    return Outcome(case, checks, time.perf_counter() - start, error, left_out)
 
 
 def as_records(outcomes: Iterable[Outcome]) -> list[dict[str, object]]:
@@ -131,6 +141,11 @@ def as_records(outcomes: Iterable[Outcome]) -> list[dict[str, object]]:
                             "unit": "", "reference": None, "source": "", "value": None,
                             "difference": None, "relative": False, "tolerance": None,
                             "passed": False, "error": outcome.error})  # fmt: skip
+        if outcome.left_out:
+            records.append({"case": case.name, "group": case.group, "quantity": "left out",
+                            "unit": "", "reference": None, "source": outcome.left_out,
+                            "value": None, "difference": None, "relative": False,
+                            "tolerance": None, "passed": None})  # fmt: skip
     return records
 
 
@@ -182,6 +197,8 @@ def page(outcomes: Sequence[Outcome]) -> str:
         lines += ["", f"## {case.title}", "", f"`galerna validate {case.name}`"]
         if case.story:
             lines += ["", " ".join(case.story.split())]
+        if outcome.left_out:
+            lines += ["", f"Left out: {outcome.left_out}"]
         if outcome.error:
             lines += ["", "The case stopped with an error:", "", "```", outcome.error, "```"]
         for source in dict.fromkeys(check.source for check in outcome.checks):

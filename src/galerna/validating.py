@@ -41,6 +41,8 @@ def judge(cases: Sequence[Any], json_file: Path | None, page: Path | None) -> in
         outcomes.append(outcome)
         title = f"{case.group}: {case.title} ({case.name}, {outcome.seconds:.1f} s)"
         tables.print_rows(title, framework.HEADINGS, map(framework.row, outcome.checks))
+        if outcome.left_out:
+            print(f"left out: {outcome.left_out}")
         if outcome.error:
             print(outcome.error, file=sys.stderr)
     if json_file is not None:
