@@ -88,7 +88,14 @@ class Machine:
 
     def notices(self) -> tuple[str, ...]:
         """What a user should know of the run so far, a line each."""
-        return tuple(self.vortex_lattice.notices) if self.vortex_lattice is not None else ()
+        wake = self.vortex_lattice.notices if self.vortex_lattice is not None else ()
+        return (*wake, *getattr(self.simulation.commander, "notices", ()))
+
+    def close(self) -> None:
+        """Let go of what outlives a run otherwise: a controller's process."""
+        close = getattr(self.simulation.commander, "close", None)
+        if close is not None:
+            close()
 
     def doubts(self) -> Iterator[str]:
         """What can be simulated but is hardly meant, a sentence each."""

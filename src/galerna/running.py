@@ -66,6 +66,8 @@ def simulate(
             result.finish(f"stopped at {machine.simulation.time:.6g} s: {reason}")
         error.add_note(f"the records so far are in {output}")
         raise
+    finally:
+        machine.close()
     return result.finish(machine.simulation.stopped or "complete")
 
 

@@ -75,7 +75,16 @@ class DisconOptions(ControlOptions):
     library: str = Field(
         "rosco", description="The library's file; 'rosco' finds the one of the rosco package."
     )
-    input_file: str | None = Field(None, description="The file that the library reads.")
+    input_file: str | None = Field(
+        None, description="The file that the library reads; it works in that file's folder."
+    )
+    output_folder: str | None = Field(
+        None,
+        description="Where what the library writes and prints is kept; discarded by default.",
+    )
+    pitch_control: Literal["individual", "collective"] = Field(
+        "individual", description="Which pitch demands count: one per blade, or a common one."
+    )
     timeout_s: PositiveFloat = Field(
         30.0, description="Wall-clock time after which a call that does not return is an error."
     )

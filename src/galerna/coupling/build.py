@@ -8,9 +8,10 @@ from galerna.case import LoadedCase
 from galerna.contract import Array, Stations
 from galerna.control.actuators import PitchActuator
 from galerna.control.baseline import BaselineController, BaselineSettings
+from galerna.control.discon import DisconController
 from galerna.control.drivetrain import PowerTrain
 from galerna.control.interface import Controller
-from galerna.control.options import BaselineOptions, Control
+from galerna.control.options import BaselineOptions, Control, DisconOptions
 from galerna.coupling.control_loop import ControlLoop
 from galerna.coupling.flexible import FlexibleMachine
 from galerna.coupling.paths import SignalPath, StepPath
@@ -72,7 +73,7 @@ def control_loop(
     assert options is not None
     return ControlLoop(
         machine,
-        controller(options, turbine),
+        controller(case, turbine),
         PowerTrain.of(turbine.drivetrain),
         pitch_actuator(options, turbine),
         hub_wind,
@@ -80,8 +81,12 @@ def control_loop(
     )
 
 
-def controller(options: Control, turbine: Turbine) -> Controller:
-    """The controller that options describe."""
+def controller(case: LoadedCase, turbine: Turbine) -> Controller:
+    """The controller that a case describes."""
+    options = case.case.control
+    assert options is not None
+    if isinstance(options, DisconOptions):
+        return DisconController(options, turbine, case.folder, sample_time(case))
     if isinstance(options, BaselineOptions):
         fine = options.fine_pitch_deg
         return BaselineController(
@@ -94,6 +99,16 @@ def controller(options: Control, turbine: Turbine) -> Controller:
             ),
         )
     raise InputError("model", f"{options.model!r} is not built yet")
+
+
+def sample_time(case: LoadedCase) -> float:
+    """Time s between the calls of a case's controller; InputError for parts of a time step."""
+    options, step = case.case.control, case.case.time_step_s
+    chosen = (options.sample_time_s if options is not None else None) or step
+    if abs(chosen / step - round(chosen / step)) > 1e-6:
+        what = f"{chosen:g} s is not a whole number of time steps of {step:g} s"
+        raise InputError("sample_time_s", what)
+    return chosen
 
 
 def pitch_actuator(options: Control, turbine: Turbine) -> PitchActuator:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
@@ -107,6 +107,17 @@ class ControlLoop:
         remembered = {k.removeprefix(prefix): v for k, v in state.items() if k.startswith(prefix)}
         if remembered:
             self.controller.restore(remembered)  # type: ignore[attr-defined]
+
+    def close(self) -> None:
+        """Let go of what the controller holds, where it holds something."""
+        close: Callable[[], None] | None = getattr(self.controller, "close", None)
+        if close is not None:
+            close()
+
+    @property
+    def notices(self) -> Sequence[str]:
+        """What the controller has to say after a run."""
+        return tuple(getattr(self.controller, "notices", ()))
 
     def _check(self) -> None:
         demands = self.demands
