@@ -54,7 +54,7 @@ def test_torque_never_jumps_or_falls_below_rated(name: str) -> None:
 def test_pitched_blades_hold_region_three() -> None:
     curve = torque_curve(NREL.control, NREL.drivetrain)
     speed = 0.97 * curve.rated
-    assert curve.torque(speed, hold_rated=True) == pytest.approx(curve.power / speed)
+    assert curve.torque(speed, region_3=1.0) == pytest.approx(curve.power / speed)
 
 
 def test_gains_without_the_generators_slope_are_the_reports() -> None:
@@ -88,12 +88,12 @@ def test_the_loop_on_a_rigid_rotor_oscillates_as_designed() -> None:
     gains = pitch_gains(sensitivity, INERTIA, 97.0, above_rated="constant_torque")
     start, dt = 10.45 * DEG, 0.002
     still = PitchGains(*(np.full(2, v[1]) for v in vars(gains).values()))
-    loop = CollectivePitch(still, 97.0 * 12.1 * RPM, 0.0, 1.5)
+    loop = CollectivePitch(still, 97.0 * 12.1 * RPM, 1.5)
     loop.start(start)
     slope = sensitivity.power_by_pitch[1] / sensitivity.rotor_speed / INERTIA
     error, crossing, path = 0.05, np.nan, []
     for i in range(20000):
-        pitch = loop.angle(97.0 * (12.1 * RPM + error), dt)
+        pitch = loop.hold_speed(97.0 * (12.1 * RPM + error), 0.0, dt)
         error += dt * slope * (pitch - start)
         path.append(error)
         if np.isnan(crossing) and error < 0.0:
@@ -105,10 +105,10 @@ def test_the_loop_on_a_rigid_rotor_oscillates_as_designed() -> None:
 
 
 def test_pitch_does_not_wind_up() -> None:
-    loop = CollectivePitch(PitchGains.of_schedule(NREL.control.pitch_schedule), 122.9, 0.0, 1.5)
+    loop = CollectivePitch(PitchGains.of_schedule(NREL.control.pitch_schedule), 122.9, 1.5)
     for _ in range(1000):
-        assert loop.angle(80.0, 0.1) == 0.0
-    assert loop.angle(124.0, 0.1) > 0.0
+        assert loop.hold_speed(80.0, 0.0, 0.1) == 0.0
+    assert loop.hold_speed(124.0, 0.0, 0.1) > 0.0
 
 
 def test_filter_has_its_corner() -> None:
@@ -146,4 +146,4 @@ def test_a_controller_resumes_with_the_same_demands() -> None:
 
 def test_an_unknown_mode_is_named() -> None:
     with pytest.raises(InputError, match="emergency_stop"):
-        BaselineSettings(events=((1.0, "emergency"),))
+        BaselineController(NREL, BaselineSettings(events=((1.0, "emergency"),)))

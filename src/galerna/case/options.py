@@ -21,7 +21,7 @@ from pydantic import (
 
 from galerna.aero.bem.options import BemOptions
 from galerna.aero.vortex.options import VortexLatticeOptions
-from galerna.control.options import Control
+from galerna.control.options import BaselineOptions, Control
 from galerna.inflow.options import InflowOptions
 from galerna.structure.options import StructureOptions
 from galerna.units import AIR_DENSITY
@@ -213,7 +213,11 @@ class Case(Block):
     @property
     def start(self) -> Operation:
         """How the machine is run, or starts where a controller runs it."""
-        return self.operation or Operation(operating_point="steady")
+        if self.operation is not None:
+            return self.operation
+        if isinstance(self.control, BaselineOptions) and self.control.at_rest:
+            return Operation(rotor_speed_rpm=0.0, pitch_deg=90.0)
+        return Operation(operating_point="steady")
 
     @property
     def record_every(self) -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Protocol, runtime_checkable
 
@@ -44,7 +45,8 @@ class Measurements:
 class Demands:
     """What a controller asks for: pitch rad per blade, generator torque N m, yaw rate rad/s.
 
-    ``brake`` N m is a torque against the rotation of the low-speed shaft.
+    One pitch angle will do for all blades. ``brake`` N m, from 0 on, is what the brake on the
+    low-speed shaft grips with.
     """
 
     pitch: Array
@@ -59,7 +61,15 @@ class Controller(Protocol):
 
     ``sample_time`` s between calls, where the object has it; otherwise every step. What the next
     demand depends on is in ``state``, where the object has ``state`` and ``restore``: a run whose
-    controller does not have them cannot be resumed.
+    controller does not have them cannot be resumed. With ``channels`` and ``record`` it shows
+    states of its own in the results.
     """
 
     def demands(self, measured: Measurements) -> Demands: ...
+
+
+class Stateful(Protocol):
+    """A part of a controller that remembers something."""
+
+    def state(self) -> dict[str, np.ndarray]: ...
+    def restore(self, state: Mapping[str, np.ndarray]) -> None: ...

@@ -1,14 +1,15 @@
-"""Collective pitch: a PI on the filtered generator speed, its gains scheduled with pitch."""
+"""Collective pitch: a PID on the filtered generator speed, its gains scheduled with pitch."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from math import exp
+from math import exp, inf
 
 import numpy as np
 
 from galerna.contract import Array
+from galerna.control.actuators import limited
 from galerna.errors import InputError
 
 
@@ -60,35 +61,49 @@ class LowPass:
 
 
 class CollectivePitch:
-    """The pitch angle that holds a generator speed, between ``low`` and ``high`` rad.
+    """The pitch angle that holds a generator speed (eq. 2.127), up to ``high`` rad.
 
-    The integral part is an angle and stays within the limits, so that it does not wind up and
-    gains may change without a jump.
+    It changes by at most ``rate`` rad/s: what the actuator can follow. The integral part is an
+    angle, so that gains may change without a jump; it stays within the limits of the angle, and
+    waits while the rate is at its limit, so that it does not wind up. The gains are those at the
+    integral part: the pitch without what the speed's ripple adds.
     """
 
-    def __init__(self, gains: PitchGains, reference: float, low: float, high: float) -> None:
-        self.gains, self.reference, self.low, self.high = gains, reference, low, high
-        self.integral = low
+    def __init__(self, gains: PitchGains, reference: float, high: float, rate: float = inf) -> None:
+        self.gains, self.reference, self.high, self.rate = gains, reference, high, rate
+        self.integral = self.angle = 0.0
         self._error = np.nan
 
     def start(self, pitch: float) -> None:
         """Begin at a pitch angle and no speed error."""
-        self.integral, self._error = float(np.clip(pitch, self.low, self.high)), np.nan
+        self.integral = self.angle = pitch
+        self._error = np.nan
 
-    def angle(self, speed: float, dt: float) -> float:
-        """Pitch angle for a filtered generator speed rad/s, ``dt`` s after the last."""
+    def go(self, target: float, rate: float, dt: float) -> float:
+        """Move towards an angle at a rate rad/s, whatever the speed is."""
+        self.start(limited(target, self.angle, min(rate, self.rate), dt))
+        return self.angle
+
+    def hold_speed(self, speed: float, low: float, dt: float) -> float:
+        """Pitch angle, from ``low`` rad on, for a generator speed ``dt`` s after the last one."""
         error = speed - self.reference
         proportional, integral, derivative = self.gains.at(self.integral)
-        rate = 0.0 if np.isnan(self._error) or dt == 0.0 else (error - self._error) / dt
+        change = 0.0 if np.isnan(self._error) or dt == 0.0 else (error - self._error) / dt
         self._error = error
-        self.integral = float(np.clip(self.integral + integral * error * dt, self.low, self.high))
-        angle = self.integral + proportional * error + derivative * rate
-        return float(np.clip(angle, self.low, self.high))
+        summed = self._within(self.integral + integral * error * dt, low)
+        wanted = self._within(summed + proportional * error + derivative * change, low)
+        self.angle = limited(wanted, self.angle, self.rate, dt)
+        if (wanted - self.angle) * error <= 0.0:
+            self.integral = summed
+        return self.angle
+
+    def _within(self, angle: float, low: float) -> float:
+        return min(max(angle, low), self.high)
 
     def state(self) -> dict[str, np.ndarray]:
-        """The integral and the last error."""
-        return {"pitch_integral": np.array(self.integral), "speed_error": np.array(self._error)}
+        """The integral, the last error and the last angle."""
+        return {"pitch_pid": np.array([self.integral, self._error, self.angle])}
 
     def restore(self, state: Mapping[str, np.ndarray]) -> None:
         """Take ``state`` back."""
-        self.integral, self._error = float(state["pitch_integral"]), float(state["speed_error"])
+        self.integral, self._error, self.angle = state["pitch_pid"].tolist()

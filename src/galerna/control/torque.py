@@ -3,7 +3,9 @@
 Below rated speed the torque follows K w^2, which holds the best tip-speed ratio; straight
 lines lead into it from the cut-in speed (region 1 1/2) and out of it to the rated torque
 (region 2 1/2, a line with the slip of an induction machine); above, power or torque is
-constant. Source: Jonkman et al., NREL/TP-500-38060 (2009), section 7.2.
+constant. Where a turbine does not say how wide region 1 1/2 is, it is steep: the torque holds
+the minimum speed until the optimum asks for more. Source: Jonkman et al., NREL/TP-500-38060
+(2009), section 7.2.
 """
 
 from __future__ import annotations
@@ -20,6 +22,7 @@ AboveRated = Literal["constant_power", "constant_torque"]
 RATED_SHARE = 0.99  #: of the rated speed, where region 3 begins
 SLIP = 0.10  #: of region 2 1/2, against the synchronous speed
 CUT_IN_RAMP = 1.05  #: end of region 1 1/2 over the minimum speed, where a turbine does not say
+RELEASED, HELD = 0.8, 0.9  #: of where region 2 1/2 begins, between which a held region 3 fades
 
 
 @dataclass(frozen=True)
@@ -44,13 +47,28 @@ class TorqueCurve:
         """Torque at the start of region 3."""
         return self.power / self.rated
 
-    def torque(self, speed: float, hold_rated: bool = False) -> float:
-        """Torque at a speed; ``hold_rated`` stays in region 3 below its speed: blades pitched."""
+    def torque(self, speed: float, region_3: float = 0.0) -> float:
+        """Torque at a speed.
+
+        ``region_3``, from 0 to 1, is how far region 3 is held below its speed, because the blades
+        are still pitched; far below region 2 1/2 it is not.
+        """
+        if speed >= self.rated:
+            return self._above(speed)
+        below = self._below(speed)
+        share = (speed / self.leave - RELEASED) / (HELD - RELEASED)
+        held = region_3 * min(max(share, 0.0), 1.0)
+        return below + held * (self._above(speed) - below) if held > 0.0 else below
+
+    def _above(self, speed: float) -> float:
+        """Region 3."""
+        if self.above_rated == "constant_torque":
+            return self.rated_torque
+        return min(self.power / speed, self.maximum)
+
+    def _below(self, speed: float) -> float:
+        """Regions 1 to 2 1/2."""
         gain = self.optimal_mode_gain
-        if speed >= self.rated or hold_rated:
-            if self.above_rated == "constant_torque":
-                return self.rated_torque
-            return min(self.power / max(speed, 1e-9), self.maximum)
         if speed <= self.cut_in:
             return 0.0
         if speed < self.ramp_end:
@@ -79,7 +97,7 @@ def torque_curve(
     power = control.rated_power / drivetrain.generator_efficiency
     rated = RATED_SHARE * control.rated_rotor_speed * ratio
     cut_in = control.minimum_rotor_speed * ratio
-    ramp_end = CUT_IN_RAMP * cut_in
+    ramp_end = (control.region_2_rotor_speed or 0.0) * ratio or CUT_IN_RAMP * cut_in
     torque = power / rated
     synchronous = rated / (1.0 + SLIP)
     slope = torque / (rated - synchronous)
@@ -87,7 +105,7 @@ def torque_curve(
         leave = sqrt(torque / gain)
     else:
         leave = (slope - sqrt(slope * (slope - 4.0 * gain * synchronous))) / (2.0 * gain)
-    if not cut_in < ramp_end < leave:
+    if not (cut_in < ramp_end < leave or cut_in == 0.0):
         what = f"cut in at {cut_in / RPM:.4g} rpm, but the optimum is left at {leave / RPM:.4g} rpm"
         raise InputError("control", what, "check the minimum speed and the optimal-mode gain")
     maximum = control.maximum_torque or inf

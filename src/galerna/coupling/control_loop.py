@@ -3,34 +3,47 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from galerna.contract import Array, Channel
-from galerna.control.actuators import PitchActuator
+from galerna.control.actuators import PitchActuator, lagged
+from galerna.control.brake import Brake
 from galerna.control.drivetrain import PowerTrain
+from galerna.control.external import ExternalController
 from galerna.control.interface import Controller, Demands, Measurements
+from galerna.control.python_controller import ask, controller_name
+from galerna.control.yawing import wrapped
 from galerna.coupling.flexible import FlexibleMachine
-from galerna.errors import InputError
+from galerna.errors import ControllerError
 from galerna.units import DEG, RPM
 
 CHANNELS = (
     Channel("generator_speed", "rad/s", "generator speed", (), "GenSpeed", "rpm", 1.0 / RPM),
     Channel("generator_torque", "N m", "generator torque", (), "GenTq", "kN-m", 1e-3),
     Channel("electrical_power", "W", "electrical power", (), "GenPwr", "kW", 1e-3),
+    Channel("drivetrain_losses", "W", "power lost in gearbox and generator"),
     Channel("pitch_demand", "rad", "demanded blade pitch", ("blade",), "BlPitchC{blade}", "deg",
             1.0 / DEG),
+    Channel("torque_demand", "N m", "demanded generator torque", (), "GenTqC", "kN-m", 1e-3),
+    Channel("brake_torque", "N m", "torque of the brake at the low-speed shaft", (), "HSSBrTqC",
+            "kN-m", 1e-3),
+    Channel("yaw_rate_demand", "rad/s", "demanded yaw rate", (), "YawRateC", "deg/s", 1.0 / DEG),
+    Channel("yaw_error", "rad", "nacelle yaw minus wind direction at the hub", (), "YawErr", "deg",
+            1.0 / DEG),
 )  # fmt: skip
+CLOCK_TOLERANCE = 1e-9  #: s
 
 
 class ControlLoop:
     """A controller that commands a machine; see ``simulation.Commander``.
 
     ``hub_wind`` gives the undisturbed wind (3,) m/s at the hub at a time. The controller is
-    asked every ``sample_time`` s, or before every step.
+    asked every ``sample_time`` s, or its own, or before every step, and its demands hold until it
+    is asked again. ``torque_lag`` s is the generator's time constant; ``held_inertia`` kg m2 is
+    what the brake holds.
     """
-
-    channels = CHANNELS
 
     def __init__(
         self,
@@ -40,73 +53,168 @@ class ControlLoop:
         actuator: PitchActuator,
         hub_wind: Callable[[float], Array],
         sample_time: float | None = None,
+        *,
+        torque_lag: float = 0.0,
+        held_inertia: float = 1.0,
     ) -> None:
         self.machine, self.controller = machine, controller
         self._train, self._actuator, self._hub_wind = train, actuator, hub_wind
-        self._sample_time = sample_time
+        self._torque_lag, self._brake = torque_lag, Brake(held_inertia)
+        own: float | None = getattr(controller, "sample_time", None)
+        self._sample_time = sample_time or own or 0.0
         self.coordinates: Mapping[str, Array] = {}
+        self.channels: tuple[Channel, ...] = (*CHANNELS, *getattr(controller, "channels", ()))
         self._next = -np.inf
         self.demands = Demands(machine.pitch_angles(0.0), 0.0)
+        self.torque = np.nan  #: N m that the generator gives
+        self._braking = 0.0  # N m
+        self._once: dict[str, float | Array] = {}
+        self._measured: Measurements | None = None
+        self._yaw = machine.yaw  # rad, of the yaw drive
 
     def command(self, time: float, dt: float) -> None:
         """Ask the controller if it is time, and set the machine for the step from ``time`` s."""
-        if time >= self._next - 1e-9:
-            self.demands = self.controller.demands(self.measure(time))
-            self._check()
-            self._next = time + (self._sample_time or 0.0)
-        pitch = self._actuator.after(self.machine.pitch_angles(time), self.demands.pitch, dt)
-        self.machine.go_pitch(pitch, time, dt)
-        brake = self._train.shaft_torque(self.demands.generator_torque, self.machine.drive_speed)
-        brake += np.sign(self.machine.drive_speed) * self.demands.brake
-        self.machine.set_shaft_torque(-brake)
+        demands = self._demanded(time)
+        machine, speed = self.machine, self.machine.drive_speed
+        pitch = self._actuator.after(machine.pitch_angles(time), demands.pitch, dt)
+        machine.go_pitch(pitch, time, dt)
+        if demands.yaw_rate:
+            self._turn(demands.yaw_rate * dt, time, dt)
+        started = not np.isnan(self.torque)
+        before = self.torque if started else demands.generator_torque
+        self.torque = lagged(demands.generator_torque, before, self._torque_lag, dt)
+        self._braking = self._brake.torque(demands.brake, speed, dt)
+        machine.set_shaft_torque(-self._train.shaft_torque(self.torque, speed) - self._braking)
+        self._measured = None
+
+    def _turn(self, angle: float, time: float, dt: float) -> None:
+        """Yaw on by an angle rad within the step."""
+        go_yaw = getattr(self.machine, "go_yaw", None)
+        if go_yaw is None:
+            raise ControllerError("control", "asks for yaw, but the machine has no yaw drive")
+        self._yaw += angle
+        go_yaw(self._yaw, time, dt)
+
+    def override(self, **demands: float | Array) -> None:
+        """Replace demands, by their names, for the next step; an external controller keeps them.
+
+        Raises ControllerError for demands that cannot be met.
+        """
+        self._once = demands
 
     def measure(self, time: float) -> Measurements:
         """What the sensors show of the accepted state."""
-        machine, torque = self.machine, self.demands.generator_torque
-        wind = self._hub_wind(time)
+        if self._measured is None or self._measured.time != time:
+            self._measured = self._sensed(time)
+        return self._measured
+
+    def _sensed(self, time: float) -> Measurements:
+        machine, torque, speed = self.machine, self._torque_now, self.machine.drive_speed
+        wind, yaw = self._hub_wind(time), self.machine.yaw
         return Measurements(
             time=time,
             rotor_speed=machine.rotor_speed,
-            generator_speed=self._train.generator_speed(machine.drive_speed),
+            generator_speed=self._train.generator_speed(speed),
             generator_torque=torque,
-            electrical_power=self._train.electrical_power(torque, machine.drive_speed),
+            electrical_power=self._train.electrical_power(torque, speed),
             pitch=machine.pitch_angles(time),
             azimuth=machine.azimuth,
-            yaw=machine.yaw,
-            yaw_error=machine.yaw - float(np.arctan2(wind[1], wind[0])),
-            wind_speed=float(np.linalg.norm(wind)),
+            yaw=yaw,
+            yaw_error=wrapped(yaw - float(np.arctan2(wind[1], wind[0]))),
+            wind_speed=float(np.sqrt(wind @ wind)),
         )
+
+    def _demanded(self, time: float) -> Demands:
+        """What holds for the next step."""
+        if time >= self._next - CLOCK_TOLERANCE:
+            self.demands = self._checked(ask(self.controller, self.measure(time)), time)
+            late = not self._next + self._sample_time > time
+            self._next = (time if late else self._next) + self._sample_time
+        if not self._once:
+            return self.demands
+        demands = self._checked(replace(self.demands, **self._once), time)  # type: ignore[arg-type]
+        self._once = {}
+        if isinstance(self.controller, ExternalController):
+            self.controller.hold(demands)
+            self.demands = demands
+        return demands
+
+    def _checked(self, demands: Demands, time: float) -> Demands:
+        """The demands with a pitch for every blade; ControllerError where that cannot be."""
+        blades, where = len(self.machine.pitch), controller_name(self.controller)
+        try:
+            pitch = np.array(demands.pitch, dtype=float)
+            others = (demands.generator_torque, demands.yaw_rate, demands.brake)
+            torque, yaw_rate, brake = (float(value) for value in others)
+        except (TypeError, ValueError) as error:
+            hint = "pitch takes an angle per blade, all else one number"
+            raise ControllerError(where, f"asks for {demands}", hint, time) from error
+        if pitch.shape not in ((), (1,), (blades,)):
+            what = f"asks for pitch angles of shape {pitch.shape} for {blades} blades"
+            raise ControllerError(where, what, time=time)
+        if not np.isfinite(pitch.sum() + torque + yaw_rate + brake):
+            raise ControllerError(where, f"asks for {demands}", "it must be numbers", time)
+        if brake < 0.0:
+            raise ControllerError(where, f"asks for a brake of {brake:g} N m", "0 is none", time)
+        return Demands(np.broadcast_to(pitch, blades).copy(), torque, yaw_rate, brake)
+
+    @property
+    def _torque_now(self) -> float:
+        return 0.0 if np.isnan(self.torque) else self.torque
 
     def record(self) -> Mapping[str, float | Array]:
         """The channels of the accepted state."""
-        torque, speed = self.demands.generator_torque, self.machine.drive_speed
+        torque, speed, demands = self._torque_now, self.machine.drive_speed, self.demands
+        electrical = self._train.electrical_power(torque, speed)
+        measured = self.measure(self.machine.accepted.time)
+        own: Callable[[], Mapping[str, float | Array]] = getattr(self.controller, "record", dict)
         return {
             "generator_speed": self._train.generator_speed(speed),
             "generator_torque": torque,
-            "electrical_power": self._train.electrical_power(torque, speed),
-            "pitch_demand": self.demands.pitch.copy(),
+            "electrical_power": electrical,
+            "drivetrain_losses": self._train.shaft_torque(torque, speed) * speed - electrical,
+            "pitch_demand": demands.pitch.copy(),
+            "torque_demand": demands.generator_torque,
+            "brake_torque": self._braking,
+            "yaw_rate_demand": demands.yaw_rate,
+            "yaw_error": measured.yaw_error,
+            **own(),
         }
 
+    @property
+    def resumable(self) -> str:
+        """Why a run cannot be resumed; empty where it can."""
+        missing = [n for n in ("state", "restore") if not hasattr(self.controller, n)]
+        if not missing:
+            return ""
+        what = " and no ".join(missing)
+        return f"{controller_name(self.controller)} has no {what}: what it remembers is lost"
+
     def state(self) -> dict[str, np.ndarray]:
-        """The demands that hold, and what the controller remembers."""
+        """The demands that hold, the actuators' states, and what the controller remembers."""
+        demands = self.demands
+        others = [demands.generator_torque, demands.yaw_rate, demands.brake]
         own = {
-            "next": np.array(self._next),
-            "pitch": self.demands.pitch.copy(),
-            "others": np.array(
-                [self.demands.generator_torque, self.demands.yaw_rate, self.demands.brake]
-            ),
+            "clock": np.array(self._next),
+            "pitch": demands.pitch.copy(),
+            "others": np.array([*others, self.torque, self._braking, self._yaw]),
+            **self._actuator.state(),
+            **self._brake.state(),
         }
         remembered: dict[str, np.ndarray] = getattr(self.controller, "state", dict)()
         return {**own, **{f"controller/{name}": value for name, value in remembered.items()}}
 
     def restore(self, state: Mapping[str, np.ndarray]) -> None:
         """Take ``state`` back."""
-        self._next = float(state["next"])
-        self.demands = Demands(state["pitch"].copy(), *state["others"].tolist())
+        self._next, self._measured, self._once = float(state["clock"]), None, {}
+        *others, self.torque, self._braking, self._yaw = state["others"].tolist()
+        self.demands = Demands(state["pitch"].copy(), *others)
+        self._actuator.restore(state)
+        self._brake.restore(state)
         prefix = "controller/"
         remembered = {k.removeprefix(prefix): v for k, v in state.items() if k.startswith(prefix)}
-        if remembered:
-            self.controller.restore(remembered)  # type: ignore[attr-defined]
+        if hasattr(self.controller, "restore"):
+            self.controller.restore(remembered)
 
     def close(self) -> None:
         """Let go of what the controller holds, where it holds something."""
@@ -118,12 +226,3 @@ class ControlLoop:
     def notices(self) -> Sequence[str]:
         """What the controller has to say after a run."""
         return tuple(getattr(self.controller, "notices", ()))
-
-    def _check(self) -> None:
-        demands = self.demands
-        values = [*demands.pitch, demands.generator_torque, demands.yaw_rate, demands.brake]
-        if len(demands.pitch) != len(self.machine.pitch):
-            what = f"{len(demands.pitch)} pitch angles for {len(self.machine.pitch)} blades"
-            raise InputError("control", what)
-        if not np.isfinite(values).all():
-            raise InputError("control", f"the controller asks for {demands}", "it must be numbers")

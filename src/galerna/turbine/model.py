@@ -250,6 +250,7 @@ class Control:
     maximum_torque_rate: float = np.inf
     optimal_mode_gain: float | None = None
     pitch_schedule: Array | None = None
+    region_2_rotor_speed: float | None = None  #: rad/s, from where the optimal torque is held
     minimum_pitch_table: Array | None = None  #: (n,2): wind speed m/s, pitch rad
     speed_filter_frequency: float | None = None  #: rad/s, low-pass on the generator speed
 

@@ -23,7 +23,7 @@ PROPERTIES: dict[str, dict[str, int]] = {
     "hub": {"pitch_system_inertia": 0},
     "nacelle": {"yaw_stiffness": 0, "yaw_damping": 0, "drag_area": 3},
     "drivetrain": {"shaft_stiffness": 0, "shaft_damping": 0},
-    "control": {"rated_wind_speed": 0, "rated_torque": 0},
+    "control": {"rated_wind_speed": 0, "rated_torque": 0, "region_2_rotor_speed": 0},
     "platform": {
         "reference_point": 3,
         "mass": 0,
