@@ -36,7 +36,8 @@ class DisconController:
         self, options: DisconOptions, turbine: Turbine, folder: Path, sample_time: float
     ) -> None:
         self.sample_time = sample_time
-        self._swap = Swap(turbine, sample_time, options.pitch_control == "individual")
+        individual, brake = options.pitch_control == "individual", 1e3 * options.brake_torque_kN_m
+        self._swap = Swap(turbine, sample_time, individual, brake)
         self._setup = _setup(options, folder, self._swap)
         self._where = f"control, library {self._setup.library.name}"
         self._warnings: list[str] = []

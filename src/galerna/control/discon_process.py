@@ -23,6 +23,7 @@ from typing import IO
 from galerna.control import discon_host
 from galerna.errors import ControllerError, InputError
 
+OUTPUT_NAME = "discon.out"  #: ROSCO replaces the ending, and writes discon.RO.dbg
 LAST_WORDS = 3  #: lines of what the library printed, in an error
 WINDOWS_FAULT = 0x8000_0000  #: exit codes from here on are faults, on Windows
 CLOSING_TIME = 5.0  #: s that the last call may take, where a call may take longer
@@ -126,7 +127,7 @@ class LibraryProcess:
                 "library": str(setup.library),
                 "procedure": setup.procedure,
                 "input_file": setup.input_file,
-                "output_name": str(self._folder / "discon"),
+                "output_name": str(self._folder / OUTPUT_NAME),
                 "log": str(self._log),
                 "told": list(setup.told),
                 "asked": list(setup.asked),

@@ -26,7 +26,7 @@ ASKED = (
     CONTACTOR, BRAKE, PITCH, PITCH + 1, PITCH + 2, COLLECTIVE, TORQUE, YAW_RATE,
     PITCH_OVERRIDE, TORQUE_OVERRIDE, YAW_OVERRIDE, BRAKE_TORQUE,
 )  # fmt: skip
-BRAKE_BY_TORQUE = 16  #: value of record 36 that refers to record 107
+BRAKE_OFF, BRAKE_ON, BRAKE_BY_TORQUE = 0, 1, 16  #: record 36; the last refers to record 107
 
 
 @dataclass(frozen=True)
@@ -100,13 +100,20 @@ class Swap:
     """Rows of what a library is told about one turbine, and demands from what it answers.
 
     ``sample_time`` s lies between the calls; with ``individual`` pitch the demands are those
-    per blade (records 42 to 44), otherwise the collective one (45). What a library asks for in
-    vain is told once each in ``notices``.
+    per blade (records 42 to 44), otherwise the collective one (45). ``brake_torque`` N m is that
+    of the whole brake on the low-speed shaft. What a library asks for in vain is told once each
+    in ``notices``.
     """
 
-    def __init__(self, turbine: Turbine, sample_time: float, individual: bool = True) -> None:
+    def __init__(
+        self,
+        turbine: Turbine,
+        sample_time: float,
+        individual: bool = True,
+        brake_torque: float = 0.0,
+    ) -> None:
         self._blades, self._gear_ratio = turbine.number_of_blades, turbine.drivetrain.gear_ratio
-        self._individual = individual
+        self._individual, self._brake_torque = individual, brake_torque
         self._records = tuple(r for r in MEASURED if r.blade <= self._blades)
         self.told = (1, 11, *(record.number for record in self._records))
         self.constant = {**constants(turbine), 3: sample_time, 28: float(individual)}
@@ -142,23 +149,28 @@ class Swap:
         )
 
     def _brake(self, asked: dict[int, float], where: str, time: float) -> float:
-        """Brake torque N m at the low-speed shaft; the library's is at the generator's."""
-        if round(asked[BRAKE]) != BRAKE_BY_TORQUE:
+        """Brake torque N m at the low-speed shaft; record 107 is at the generator's."""
+        wanted = round(asked[BRAKE])
+        if wanted == BRAKE_ON:
+            return self._brake_torque
+        if wanted != BRAKE_BY_TORQUE:
             return 0.0
-        torque = asked[BRAKE_TORQUE]
-        if not isfinite(torque):
-            raise ControllerError(where, f"it asks for a brake torque of {torque}", time=time)
-        return abs(torque) * self._gear_ratio
+        if not isfinite(asked[BRAKE_TORQUE]):
+            what = f"record {BRAKE_TORQUE} of its answer is {asked[BRAKE_TORQUE]}"
+            raise ControllerError(where, what, "look at its input file and its log", time)
+        return abs(asked[BRAKE_TORQUE]) * self._gear_ratio
 
     def _notice(self, asked: dict[int, float]) -> None:
         brake = round(asked[BRAKE])
         vain = {
-            f"the brake (record 36 = {brake}) has no effect: the turbine gives no brake torque; "
-            "16 with the torque in record 107 has": brake not in (0, BRAKE_BY_TORQUE),
+            "the brake (record 36 = 1) has no torque: give it brake_torque_kN_m":
+                brake == BRAKE_ON and self._brake_torque == 0.0,
+            f"the brake (record 36 = {brake}) is not known: 0, 1 and 16 are":
+                brake not in (BRAKE_OFF, BRAKE_ON, BRAKE_BY_TORQUE),
             "the pitch override (record 55) has no effect": asked[PITCH_OVERRIDE] != 0.0,
             "the torque override (record 56) has no effect": asked[TORQUE_OVERRIDE] != 0.0,
             "yaw by torque (record 102) has no effect": asked[YAW_OVERRIDE] != 0.0,
-        }
+        }  # fmt: skip
         for notice, asked_for in vain.items():
             if asked_for and notice not in self.notices:
                 self.notices.append(notice)
