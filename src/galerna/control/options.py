@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
 from pydantic import (
     BaseModel,
@@ -11,6 +11,7 @@ from pydantic import (
     FiniteFloat,
     NonNegativeFloat,
     PositiveFloat,
+    model_validator,
 )
 
 Mode = Literal["production", "start_up", "normal_stop", "emergency_stop", "idling", "parked"]
@@ -26,11 +27,55 @@ class PitchActuatorOptions(Options):
     """What stands between the demanded pitch and the blades."""
 
     time_constant_s: NonNegativeFloat = Field(0.0, description="First-order lag; 0 has none.")
+    frequency_hz: PositiveFloat | None = Field(
+        None, description="Natural frequency of a second-order lag, instead of a time constant."
+    )
+    damping_ratio: NonNegativeFloat = Field(0.7, description="Damping of the second-order lag.")
     rate_limit_deg_s: PositiveFloat | None = Field(
         None, description="Fastest pitch rate; the turbine's own by default."
     )
     lowest_deg: FiniteFloat = Field(-5.0, description="Lowest angle.")
     highest_deg: FiniteFloat = Field(95.0, description="Highest angle.")
+
+    @model_validator(mode="after")
+    def _is_one_actuator(self) -> Self:
+        if self.frequency_hz is not None and self.time_constant_s > 0.0:
+            raise ValueError("give time_constant_s or frequency_hz, not both")
+        if self.lowest_deg >= self.highest_deg:
+            raise ValueError(f"no angle is between {self.lowest_deg:g} and {self.highest_deg:g}")
+        return self
+
+
+class IndividualPitchOptions(Options):
+    """Blade angles that take the once-per-revolution load off the roots."""
+
+    integral_gain_deg_per_MN_m_s: NonNegativeFloat | None = Field(
+        None,
+        description="Pitch per tilt or yaw moment and second; by default it takes the moments "
+        "away with a time constant of 5 s.",
+    )
+    proportional_gain_deg_per_MN_m: NonNegativeFloat = Field(
+        0.0, description="Pitch per tilt or yaw moment."
+    )
+    azimuth_offset_deg: FiniteFloat = Field(
+        0.0, description="How far the angles are turned ahead, for the lag of the actuators."
+    )
+    amplitude_deg: PositiveFloat = Field(5.0, description="Largest angle beside the common one.")
+    below_rated: bool = Field(
+        False, description="Act at the lowest pitch too; by default it fades out there."
+    )
+
+
+class YawOptions(Options):
+    """The nacelle turns slowly into the mean wind when that is far enough to the side."""
+
+    rate_deg_s: PositiveFloat = Field(0.3, description="Rate of the yaw drive.")
+    dead_band_deg: NonNegativeFloat = Field(
+        8.0, description="Averaged yaw error from which on the nacelle is turned."
+    )
+    averaging_s: NonNegativeFloat = Field(
+        60.0, description="Time constant over which the yaw error is averaged."
+    )
 
 
 class Event(Options):
@@ -49,6 +94,9 @@ class ControlOptions(Options):
     pitch_actuator: PitchActuatorOptions = Field(
         PitchActuatorOptions(), description="Lag and limits of the blades' pitch."
     )
+    torque_time_constant_s: NonNegativeFloat = Field(
+        0.0, description="First-order lag of the generator's torque; 0 has none."
+    )
 
 
 class BaselineOptions(ControlOptions):
@@ -66,6 +114,29 @@ class BaselineOptions(ControlOptions):
     fine_pitch_deg: FiniteFloat | None = Field(
         None, description="Lowest pitch in production; the turbine's own by default."
     )
+    individual_pitch: IndividualPitchOptions | None = Field(
+        None, description="Individual pitch control; `{}` is one with its defaults."
+    )
+    yaw: YawOptions | None = Field(
+        None, description="Yaw control; `{}` is one with its defaults, left out is none."
+    )
+    overspeed_percent: float | None = Field(
+        None,
+        gt=100.0,
+        description="Rotor speed, of the rated one, that brings an emergency stop; left out, "
+        "none does, as in the reference controllers.",
+    )
+    brake_torque_kN_m: NonNegativeFloat | None = Field(
+        None, description="Brake on the low-speed shaft; the rated torque by default."
+    )
+    emergency_brake: bool = Field(
+        False, description="Whether the brake helps in an emergency stop; it parks in any case."
+    )
+
+    @property
+    def at_rest(self) -> bool:
+        """Whether the mode begins with a rotor that stands still, blades feathered."""
+        return self.mode in ("start_up", "idling", "parked")
 
 
 class DisconOptions(ControlOptions):
