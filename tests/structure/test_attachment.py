@@ -81,3 +81,23 @@ def test_a_rigid_turn_has_its_centripetal_acceleration() -> None:
     assert motion.velocity == pytest.approx(np.cross(spin, motion.position))
     centripetal = np.cross(spin, np.cross(spin, motion.position))
     assert motion.acceleration == pytest.approx(centripetal, abs=1e-12)
+
+
+def test_accelerations_are_the_derivatives_of_velocities() -> None:
+    """Frames that turn fast and deform slowly along constant twists."""
+    state, h = a_state(), 1e-5
+    spin = np.array([0.5, -1.0, 2.0])
+    state.acceleration[:] = 0.0
+    for i, R in enumerate(state.rotation):
+        state.velocity[i] *= 0.1
+        state.velocity[i] += np.concatenate([R.T @ np.cross(spin, state.position[i]), R.T @ spin])
+    stations = attached(state)
+    motion = stations.motion
+    acceleration, spin_rate = motion.acceleration.copy(), motion.angular_acceleration.copy()
+    stations.follow(moved(state, h))
+    velocity, turning = motion.velocity.copy(), motion.angular_velocity.copy()
+    stations.follow(moved(state, -h))
+    of_velocity = (velocity - motion.velocity) / (2.0 * h)
+    assert acceleration == pytest.approx(of_velocity, abs=1e-4 * np.abs(of_velocity).max())
+    of_spin = (turning - motion.angular_velocity) / (2.0 * h)
+    assert spin_rate == pytest.approx(of_spin, abs=1e-5 * spin @ spin)

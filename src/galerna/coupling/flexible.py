@@ -13,7 +13,6 @@ import numpy as np
 
 from galerna.contract import Array, Loads, Stations
 from galerna.coupling.paths import StepPath
-from galerna.coupling.sensors import Gauges, Sensors, rows_of
 from galerna.errors import InputError, did_you_mean
 from galerna.kinematics import CHANNELS
 from galerna.structure.attachment import Attachment
@@ -25,6 +24,13 @@ from galerna.structure.system import ARRAYS, Forces, State
 from galerna.structure.turbine import TurbineOptions, TurbineSystem, turbine_system
 from galerna.turbine.geometry import part_frames
 from galerna.turbine.model import Turbine
+
+#: what a coupled step leaves out of balance: of responses in turbulence, 0.02 % of their
+#: standard deviation (docs/theory/machine.md)
+TOLERANCE = Tolerance(
+    relative=1e-4, displacement=1e-6, rotation=1e-6, velocity=1e-4, angular_velocity=1e-4,
+    force=10.0, moment=10.0,
+)  # fmt: skip
 
 
 def attach(turbine: Turbine, system: TurbineSystem, group: Sequence[Stations]) -> Attachment:
@@ -59,14 +65,6 @@ def _placed(
     return ends, fraction, origin + position @ axes.T, axes @ rotation
 
 
-def _riding(
-    turbine: Turbine, system: TurbineSystem, group: Sequence[Stations], part: str
-) -> tuple[Attachment, Integers] | None:
-    """A load model's stations on one part, and their rows in its loads."""
-    chosen, rows = rows_of(group, part)
-    return (attach(turbine, system, chosen), rows) if chosen else None
-
-
 class FlexibleMachine:
     """A turbine's structure under its load models; see ``simulation.Structure``.
 
@@ -74,6 +72,8 @@ class FlexibleMachine:
     ``options.pitch_motion`` says, or are moved by ``go_pitch``. Raises InputError for a part
     that the turbine does not have.
     """
+
+    channels = CHANNELS
 
     def __init__(
         self,
@@ -83,10 +83,10 @@ class FlexibleMachine:
         *,
         scheme: Scheme | None = None,
         tolerance: Tolerance | None = None,
-        gauges: Gauges | None = None,
     ) -> None:
         options = options or TurbineOptions()
         blades = turbine.number_of_blades
+        self.coordinates: Mapping[str, Array] = {"blade": np.arange(1.0, blades + 1.0)}
         self._pitch_offset = options.pitch
         self.pitch: tuple[Angle, ...] = options.pitch_motion or tuple(
             StepPath(0.0) for _ in range(blades)
@@ -94,17 +94,11 @@ class FlexibleMachine:
         self.parts = turbine_system(turbine, replace(options, pitch_motion=self.pitch))
         self.system = self.parts.system
         self.integrator = Integrator(
-            self.system, scheme or Scheme.generalized_alpha(), tolerance or Tolerance()
+            self.system, scheme or Scheme.generalized_alpha(), tolerance or TOLERANCE
         )
         self._riders = [attach(turbine, self.parts, group) for group in stations]
         self.motions = tuple(riders.motion for riders in self._riders)
         self._forces = Forces.none(len(self.system))
-        self.loads: Sequence[Loads] = ()  #: of the load models, in the last balance
-        tower = [_riding(turbine, self.parts, group, "tower") for group in stations]
-        self.sensors = Sensors(turbine, self.parts, options.pitch, tower, gauges or Gauges())
-        self.channels = CHANNELS + self.sensors.channels
-        numbers = np.arange(1.0, blades + 1.0)
-        self.coordinates: Mapping[str, Array] = {"blade": numbers, **self.sensors.coordinates}
         names = self.system.names
         self._nacelle, self._hub = names.index("nacelle"), names.index("hub")
         self._driven = names.index("generator") if "generator" in names else self._hub
@@ -182,7 +176,6 @@ class FlexibleMachine:
 
     def forces(self, loads: Sequence[Loads]) -> Forces:
         """Loads on the stations as loads on the frames; the array is used again."""
-        self.loads = loads
         self._forces.follower[:] = 0.0
         for riders, load in zip(self._riders, loads, strict=True):
             riders.add_loads(load, self._forces.follower)
@@ -195,20 +188,7 @@ class FlexibleMachine:
             "azimuth": self.azimuth,
             "pitch": self.pitch_angles(self.accepted.time),
             "yaw": self.yaw,
-            **self.sensors.record(self.accepted, self.loads, self.rotor_speed),
         }
-
-    def root_moments(self) -> Array:
-        """Moments (b,2) N m out of plane and in plane at the blades' roots."""
-        return self.sensors.blades.root_moments(self.accepted)
-
-    def tower_top_acceleration(self) -> Array:
-        """Acceleration (3,) m/s2 of the tower's top in the axes of the nacelle."""
-        return self.sensors.tower.top_acceleration(self.accepted)
-
-    def platform_motion(self) -> Array:
-        """Displacement m and rotation rad (6,) of the base; about z first, about x last."""
-        return self.sensors.tower.base_motion(self.accepted)
 
     def state(self) -> dict[str, np.ndarray]:
         """All that the next step depends on."""

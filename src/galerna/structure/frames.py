@@ -17,7 +17,7 @@ from numba import njit
 
 from galerna.contract import Array
 
-from .blocks import FAST, multiply3, multiply6
+from .blocks import FAST, multiply3
 
 
 def _half_cotangent_series(terms: int) -> list[float]:
@@ -32,13 +32,11 @@ def _half_cotangent_series(terms: int) -> list[float]:
 _ALTERNATING = [(-1.0) ** k for k in range(18)]
 _HALF_COTANGENT = _half_cotangent_series(18)
 _BEND = np.array([-_ALTERNATING[k] * _HALF_COTANGENT[k] for k in range(1, 18)])
-_EVEN = [_ALTERNATING[k] / factorial(2 * k + 1) for k in range(18)]
-_ODD = [-_ALTERNATING[k] / factorial(2 * k + 2) for k in range(18)]
-_TANGENT_1 = np.array([(1 - k) * _ODD[k] for k in range(18)])
-_TANGENT_2 = np.array([(k - 2) * _EVEN[k] for k in range(1, 18)])
-_TANGENT_3 = np.array([-k * _ODD[k] for k in range(1, 18)])
-_TANGENT_4 = np.array([(k - 1) * _EVEN[k] for k in range(2, 18)])
+_BEND_NEAR = _BEND[:6].copy()
+_VERSINE = np.array([_ALTERNATING[k] / factorial(2 * k + 2) for k in range(9)])
+_SINE_REST = np.array([_ALTERNATING[k] / factorial(2 * k + 3) for k in range(9)])
 _SERIES_BELOW = 1.0  #: squared angle up to which the inverse tangent is summed as a series
+_FEW_TERMS_BELOW = 0.02  #: squared angle of neighbours in a beam, where a few do
 
 
 @njit(cache=True, error_model="numpy")
@@ -55,6 +53,8 @@ def _sum(coefficients: Array, s: float) -> tuple[float, float, float]:
 @njit(cache=True, error_model="numpy")
 def _bend(s: float) -> tuple[float, float, float]:
     """(1 - (t/2) cot(t/2)) / t^2 for t^2 = ``s``, and its two derivatives over s."""
+    if s < _FEW_TERMS_BELOW:
+        return _sum(_BEND_NEAR, s)
     if s < _SERIES_BELOW:
         return _sum(_BEND, s)
     half = 0.5 * np.sqrt(s)
@@ -245,15 +245,41 @@ def bracket_by_twist(y: Array, dual: bool) -> Array:
     return B
 
 
-@njit(cache=True, error_model="numpy")
+@njit(cache=True, error_model="numpy", fastmath=FAST)
 def tangent(d: Array) -> Array:
-    """T(d) (6,6): ``exp(d + e) = exp(d) exp(T(d) e)`` to first order in e."""
+    """T(d) (6,6): ``exp(d + e) = exp(d) exp(T(d) e)`` to first order in e.
+
+    On SO(3) it is ``1 - b hat(phi) + c (phi phi^T - phi^2 1)`` with the ratios b and c of
+    ``_versine_ratios``; on SE(3) its derivative along the translation couples.
+    """
     s = d[3] ** 2 + d[4] ** 2 + d[5] ** 2
-    A = ad(d)
-    A2 = multiply6(A, A)
-    odd = _sum(_TANGENT_1, s)[0] * A + _sum(_TANGENT_3, s)[0] * multiply6(A2, A)
-    even = _sum(_TANGENT_2, s)[0] * A2 + _sum(_TANGENT_4, s)[0] * multiply6(A2, A2)
-    return np.eye(6) + odd + even
+    along = 2.0 * (d[0] * d[3] + d[1] * d[4] + d[2] * d[5])
+    b, b_slope, c, c_slope = _tangent_ratios(s)
+    odd = ad(d)
+    T = np.zeros((6, 6))
+    for i in range(3):
+        for j in range(3):
+            square = d[3 + i] * d[3 + j]
+            turn = c * square - b * odd[i, j]
+            shift = c * (d[3 + i] * d[j] + d[i] * d[3 + j]) + c_slope * along * square
+            shift -= b * odd[i, 3 + j] + b_slope * along * odd[i, j]
+            if i == j:
+                turn += 1.0 - c * s
+                shift -= along * (c + c_slope * s)
+            T[i, j] = T[3 + i, 3 + j] = turn
+            T[i, 3 + j] = shift
+    return T
+
+
+@njit(cache=True, error_model="numpy")
+def _tangent_ratios(s: float) -> tuple[float, float, float, float]:
+    """(1 - cos t) / t^2, (t - sin t) / t^3 for t^2 = ``s``, each with its derivative over s."""
+    if s < _SERIES_BELOW:
+        b, b_slope, _ = _sum(_VERSINE, s)
+        c, c_slope, _ = _sum(_SINE_REST, s)
+        return b, b_slope, c, c_slope
+    a, b, c = _versine_ratios(s)
+    return b, (0.5 * a - b) / s, c, (0.5 * b - 1.5 * c) / s
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)

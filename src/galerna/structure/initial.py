@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from galerna.contract import Array
 from galerna.errors import InputError
 
+from .forces import Forces, in_body_axes
 from .frames import exp_se3
-from .system import Forces, State, System, in_body_axes, reach
+from .system import State, System, reach
 
 
 def with_initial_accelerations(system: System, state: State, forces: Forces | None = None) -> State:

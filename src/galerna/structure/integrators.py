@@ -19,10 +19,11 @@ from galerna.contract import Array
 from galerna.errors import ConvergenceError, InputError
 
 from .blocks import FAST, apply, multiply3, multiply3_transposed
+from .forces import Forces
 from .frames import exp_se3, inverse_tangents
 from .initial import check_positions
-from .pairs import carried_on
-from .system import Forces, LoadFunction, State, System
+from .pairs import PairAnswer, carried_on
+from .system import Balance, LoadFunction, State, System
 
 
 @dataclass(frozen=True)
@@ -64,11 +65,15 @@ class Scheme:
         return cls(0.0, 0.0, 0.25 * (gamma + 0.5) ** 2, gamma)
 
 
+REFRESH = 0.25  #: contraction of Newton's method above which the tangent is made anew
+
+
 @dataclass(frozen=True)
 class Tolerance:
-    """When a step has converged: estimated error of the increments and of the velocities.
+    """When a step has converged: the errors that are left, each kind against its own size.
 
-    ``relative`` to the largest of its kind in the step, or absolute in m, rad, m/s and rad/s.
+    ``relative`` to the largest increment, velocity, force or moment in the structure, or
+    absolute in m, rad, m/s, rad/s, N and N m.
     """
 
     relative: float = 1e-6
@@ -76,12 +81,15 @@ class Tolerance:
     rotation: float = 1e-10
     velocity: float = 1e-8
     angular_velocity: float = 1e-8
+    force: float = 1e-3
+    moment: float = 1e-3
     iterations: int = 20
 
     @property
     def absolute(self) -> Array:
-        """The absolute tolerances (4,) in m, rad, m/s and rad/s."""
-        return np.array([self.displacement, self.rotation, self.velocity, self.angular_velocity])
+        """The absolute tolerances (6,) in m, rad, m/s, rad/s, N and N m."""
+        return np.array([self.displacement, self.rotation, self.velocity, self.angular_velocity,
+                         self.force, self.moment])  # fmt: skip
 
 
 @njit(cache=True, error_model="numpy")
@@ -104,15 +112,16 @@ def _place(
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
 def _correct(
-    variation: Array, inverse: Array, factors: Array, absolute: Array, relative: float,
-    increment: Array, v: Array, v_rate: Array, auxiliary: Array,
+    variation: Array, inverse: Array, factors: Array, residual: Array, wrench: Array,
+    absolute: Array, relative: float, increment: Array, v: Array, v_rate: Array, auxiliary: Array,
 ) -> float:  # fmt: skip
     """Add Newton's variation to the trial; the change over its tolerance, the worst of kinds.
 
-    The kinds are m, rad, m/s and rad/s, each with its tolerance in ``absolute`` (4,) and
-    ``relative`` to the largest increment or velocity of its kind.
+    The kinds are m, rad, m/s, rad/s, N and N m, each with its tolerance in ``absolute`` (6,)
+    and ``relative`` to the largest increment, velocity or ``wrench`` (m,12) of its kind; what a
+    correction takes away of forces and moments is the ``residual`` (n,6) before it.
     """
-    change_size, size = np.zeros(4), np.zeros(4)
+    change_size, size = np.zeros(6), np.zeros(6)
     for i in range(1, len(variation)):
         change = apply(inverse[i], variation[i])
         for k in range(6):
@@ -122,9 +131,14 @@ def _correct(
             auxiliary[i, k] += factors[2] * change[k]
             kind = k // 3
             change_size[kind] = max(change_size[kind], abs(change[k]))
+            change_size[4 + kind] = max(change_size[4 + kind], abs(residual[i, k]))
             size[kind] = max(size[kind], abs(increment[i, k]))
             size[2 + kind] = max(size[2 + kind], abs(v[i, k]))
-    change_size[2:] = factors[0] * change_size[:2]
+    for e in range(len(wrench)):
+        for k in range(12):
+            kind = 4 + (k // 3) % 2
+            size[kind] = max(size[kind], abs(wrench[e, k]))
+    change_size[2:4] = factors[0] * change_size[:2]
     return np.max(change_size / (absolute + relative * size))
 
 
@@ -161,37 +175,48 @@ class Trial:
         self._scale = per_acceleration * self._system.mass_scale + self._system.stiffness_scale
         self._tangents = np.zeros((3, n, 6, 6))  # inverse, of velocity, of acceleration
         self._before: float = np.inf
-        self._carried: Array | None = None
+        self._fresh = False  # whether the tangent need not be made anew
+        self._last: tuple[PairAnswer, Array, Array] | None = None
         self._residual = np.zeros((n, 6))
         self._predict(s, dt)
         self._place()
 
     def correct(self, forces: Forces) -> bool:
         """Correct the trial under ``forces``; raises ConvergenceError where it diverges."""
-        inverse, velocity_tangent, acceleration_tangent = self._tangents
-        balance = self._system.balance(
-            self.state, forces, velocity_tangent, acceleration_tangent, carried=self._carried
-        )
-        self._residual = balance.residual
-        if not np.isfinite(balance.residual).all():
-            raise self.failure()
-        variation, multiplier, constraint = self._system.solve(balance, self._scale)
-        self._carried = carried_on(self._system.pairs, balance.pairs, variation, multiplier)
+        balance = self._balance(forces)
+        variation, multiplier, constraint = self._system.correction(balance)
         state, tolerance = self.state, self._tolerance
         state.multiplier += multiplier
         state.constraint_multiplier += constraint
         error = _correct(
-            variation, inverse, self._factors, tolerance.absolute, tolerance.relative,
+            variation, self._tangents[0], self._factors, balance.residual,
+            balance.pairs.node_wrench, tolerance.absolute, tolerance.relative,
             self._increment, state.velocity, state.acceleration, state.auxiliary,
         )  # fmt: skip
         if not np.isfinite(error):
             raise self.failure()
-        contraction = min(error / self._before, 0.9) if np.isfinite(self._before) else 1.0
-        self._before = error
-        if error * contraction <= 1.0:
+        contraction = min(error / self._before, 0.9) if np.isfinite(self._before) else 0.5
+        self._fresh = contraction < REFRESH or not np.isfinite(self._before)
+        self._before, self._last = error, (balance.pairs, variation, multiplier)
+        if error * contraction / (1.0 - contraction) <= 1.0:
             return True
         self._place()
         return False
+
+    def _balance(self, forces: Forces) -> Balance:
+        """The residual at the trial; the tangent of a fast iteration stays what it was."""
+        if self._fresh:
+            balance = self._system.residual(self.state, forces)
+        else:
+            pairs, last = self._system.pairs, self._last
+            carried = None if last is None else carried_on(pairs, *last)
+            balance = self._system.balance(self.state, forces, *self._tangents[1:], carried=carried)
+        self._residual = balance.residual
+        if not np.isfinite(balance.residual).all():
+            raise self.failure()
+        if not self._fresh:
+            self._system.factorise(balance, self._scale)
+        return balance
 
     def settled(self) -> State:
         """The end of the step, rounding taken out of its rotations."""

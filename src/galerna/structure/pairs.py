@@ -126,29 +126,55 @@ def _damping_law(d: Array, va: Array, vb: Array, damping: Array) -> Array:
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
+def _respond(
+    pairs: Pairs, e: int, multiplier: Array, x: Array, R: Array, v: Array, out: PairAnswer
+) -> tuple[Array, Array, Array, Array]:
+    """Motion, wrench and directions of one pair; the twists of its frames and what carries them."""
+    has_offset = pairs.has_offset[e]
+    xa, Ra, va, carry_a = _end(pairs, e, 0, x, R, v)
+    xb, Rb, vb, carry_b = _end(pairs, e, 1, x, R, v)
+    d = log_se3(multiply3_transposed(Ra, Rb), apply_transposed(Ra, xb - xa))
+    by_b, by_a = inverse_tangents(d)
+    if has_offset:
+        by_b, by_a = multiply6(by_b, carry_b), multiply6(by_a, carry_a)
+    first, second = v[pairs.ends[e, 0]], v[pairs.ends[e, 1]]
+    wrench, rate, P = out.wrench[e], out.rate[e], out.direction[e]
+    for i in range(6):
+        out.motion[e, i], rate[i] = d[i], 0.0
+        wrench[i] = pairs.preload[e, i] + multiplier[e, i]
+        for j in range(6):
+            wrench[i] += pairs.stiffness[e, i, j] * (d[j] - pairs.reference[e, j])
+            rate[i] += by_b[i, j] * second[j] - by_a[i, j] * first[j]
+            P[i, j], P[i, 6 + j] = -by_a[i, j], by_b[i, j]
+    for i in range(6 * pairs.damped[e]):
+        for j in range(6):
+            wrench[i] += pairs.damping[e, i, j] * rate[j]
+    for j in range(12):
+        out.node_wrench[e, j] = 0.0
+        for i in range(6):
+            out.node_wrench[e, j] += P[i, j] * wrench[i]
+    return va, vb, carry_a, carry_b
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _respond_all(
+    pairs: Pairs, multiplier: Array, x: Array, R: Array, v: Array, out: PairAnswer
+) -> None:
+    for e in range(len(pairs.ends)):
+        _respond(pairs, e, multiplier, x, R, v, out)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
 def _answer_all(
     pairs: Pairs, multiplier: Array, x: Array, R: Array, v: Array, velocity_tangent: Array,
     out: PairAnswer,
 ) -> None:  # fmt: skip
     for e in range(len(pairs.ends)):
-        has_offset, damped = pairs.has_offset[e], pairs.damped[e]
-        xa, Ra, va, carry_a = _end(pairs, e, 0, x, R, v)
-        xb, Rb, vb, carry_b = _end(pairs, e, 1, x, R, v)
-        d = log_se3(multiply3_transposed(Ra, Rb), apply_transposed(Ra, xb - xa))
-        ahead, behind = inverse_tangents(d)
-        rate = apply(ahead, vb) - apply(behind, va)
-        wrench = (
-            pairs.preload[e] + multiplier[e] + apply(pairs.stiffness[e], d - pairs.reference[e])
-        )
-        if damped:
-            wrench += apply(pairs.damping[e], rate)
+        va, vb, carry_a, carry_b = _respond(pairs, e, multiplier, x, R, v, out)
+        d, P, damped = out.motion[e], out.direction[e], pairs.damped[e]
         if np.isnan(out.carried[e, 0]):
-            out.carried[e] = wrench
-        by_a, by_b = -behind, ahead
-        if has_offset:
-            by_a, by_b = multiply6(by_a, carry_a), multiply6(by_b, carry_b)
-        P = _beside(by_a, by_b)
-        G = _turning_of_wrench(d, out.carried[e], carry_a, carry_b, has_offset)
+            out.carried[e] = out.wrench[e]
+        G = _turning_of_wrench(d, out.carried[e], carry_a, carry_b, pairs.has_offset[e])
         law = pairs.stiffness[e]
         if damped:
             law = law + _damping_law(d, va, vb, pairs.damping[e])
@@ -156,14 +182,11 @@ def _answer_all(
         S = multiply_12_6_12(G, P)
         if damped:
             by_velocity = _beside(
-                multiply6(by_a, velocity_tangent[pairs.ends[e, 0]]),
-                multiply6(by_b, velocity_tangent[pairs.ends[e, 1]]),
+                multiply6(P[:, :6], velocity_tangent[pairs.ends[e, 0]]),
+                multiply6(P[:, 6:], velocity_tangent[pairs.ends[e, 1]]),
             )
             S += multiply_12_6_12(multiply_12_6_6_transposed(P, pairs.damping[e]), by_velocity)
         out.tangent[e] = S
-        out.motion[e], out.rate[e], out.wrench[e] = d, rate, wrench
-        out.node_wrench[e] = apply_transposed(P, wrench)
-        out.direction[e] = P
 
 
 def empty_answer(m: int) -> PairAnswer:
@@ -196,25 +219,12 @@ def answer(
     return room
 
 
-@njit(cache=True, error_model="numpy", fastmath=FAST)
-def node_wrenches(pairs: Pairs, multiplier: Array, x: Array, R: Array, v: Array) -> Array:
-    """The node wrenches (m,12) alone, as in ``answer``, where no tangent is needed."""
-    out = np.empty((len(multiplier), 12))
-    for e in range(len(multiplier)):
-        xa, Ra, va, carry_a = _end(pairs, e, 0, x, R, v)
-        xb, Rb, vb, carry_b = _end(pairs, e, 1, x, R, v)
-        d = log_se3(multiply3_transposed(Ra, Rb), apply_transposed(Ra, xb - xa))
-        ahead, behind = inverse_tangents(d)
-        wrench = (
-            pairs.preload[e] + multiplier[e] + apply(pairs.stiffness[e], d - pairs.reference[e])
-        )
-        if pairs.damped[e]:
-            wrench += apply(pairs.damping[e], apply(ahead, vb) - apply(behind, va))
-        on_a, on_b = -apply_transposed(behind, wrench), apply_transposed(ahead, wrench)
-        if pairs.has_offset[e]:
-            on_a, on_b = apply_transposed(carry_a, on_a), apply_transposed(carry_b, on_b)
-        out[e, :6], out[e, 6:] = on_a, on_b
-    return out
+def respond(
+    pairs: Pairs, multiplier: Array, x: Array, R: Array, v: Array, room: PairAnswer
+) -> PairAnswer:
+    """As ``answer``, with wrenches and directions alone: the tangents stay as they were."""
+    _respond_all(pairs, multiplier, x, R, v, room)
+    return room
 
 
 def carried_on(pairs: Pairs, before: PairAnswer, variation: Array, multiplier: Array) -> Array:

@@ -38,12 +38,20 @@ class Rows:
     tangent: coo_matrix
 
 
-class LinearSolver(Protocol):
-    """Solves for the node variations (n,6), pair multipliers (m,6) and row multipliers (k,)."""
+Solution = tuple[Array, Array, Array]
 
-    def solve(
-        self, nodes: Array, answer: PairAnswer, residual: Array, scale: float, rows: Rows | None
-    ) -> tuple[Array, Array, Array]: ...
+
+class LinearSolver(Protocol):
+    """Solves for the node variations (n,6), pair multipliers (m,6) and row multipliers (k,).
+
+    ``factorise`` keeps the matrix for any number of right-hand sides: the ``residual`` (n,6) of
+    the nodes, the ``motion`` (m,6) of the pairs and the ``values`` (k,) of the rows.
+    """
+
+    def factorise(
+        self, nodes: Array, answer: PairAnswer, scale: float, rows: Rows | None
+    ) -> None: ...
+    def solve(self, residual: Array, motion: Array, values: Array) -> Solution: ...
 
 
 def choose_solver(pairs: Pairs, n: int, more_rows: bool, names: list[str]) -> LinearSolver:
@@ -93,54 +101,61 @@ def _outer_ends(pairs: Pairs, parent: Integers) -> Integers:
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _eliminate(D: Array, U: Array, size: int, columns: int) -> bool:
-    """U <- D^-1 U by Gauss elimination with row exchanges; False if D is singular."""
+def _factorise_block(D: Array, pivot: Integers, size: int) -> bool:
+    """D <- its triangular factors, with row exchanges ``pivot``; False if D is singular."""
     for k in range(size):
-        pivot = k
+        p = k
         for i in range(k + 1, size):
-            if abs(D[i, k]) > abs(D[pivot, k]):
-                pivot = i
-        if not abs(D[pivot, k]) > 1e-300:
+            if abs(D[i, k]) > abs(D[p, k]):
+                p = i
+        if not abs(D[p, k]) > 1e-300:
             return False
-        if pivot != k:
-            for j in range(k, size):
-                D[k, j], D[pivot, j] = D[pivot, j], D[k, j]
-            for j in range(columns):
-                U[k, j], U[pivot, j] = U[pivot, j], U[k, j]
+        pivot[k] = p
+        if p != k:
+            for j in range(size):
+                D[k, j], D[p, j] = D[p, j], D[k, j]
         inverse = 1.0 / D[k, k]
         for i in range(k + 1, size):
-            factor = D[i, k] * inverse
+            D[i, k] *= inverse
+            factor = D[i, k]
             if factor != 0.0:
                 for j in range(k + 1, size):
                     D[i, j] -= factor * D[k, j]
-                for j in range(columns):
-                    U[i, j] -= factor * U[k, j]
-    for k in range(size - 1, -1, -1):
-        inverse = 1.0 / D[k, k]
-        for j in range(columns):
-            for i in range(k + 1, size):
-                U[k, j] -= D[k, i] * U[i, j]
-            U[k, j] *= inverse
+        D[k, k] = inverse
     return True
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _scatter(
-    ends: Integers,
-    outer: Integers,
-    slot: Integers,
-    scale: float,
-    direction: Array,
-    tangent: Array,
-    motion: Array,
-    D: Array,
-    U: Array,
-    L: Array,
-) -> None:
-    """Add the pairs to the diagonal blocks D, the outer rows U and the inner rows L of the tree.
+def _substitute_block(D: Array, pivot: Integers, size: int, B: Array) -> None:
+    """B <- D^-1 B with the factors of D, for the columns of B."""
+    columns = B.shape[1]
+    for k in range(size):
+        p = pivot[k]
+        if p != k:
+            for j in range(columns):
+                B[k, j], B[p, j] = B[p, j], B[k, j]
+    for k in range(size):
+        for i in range(k + 1, size):
+            factor = D[i, k]
+            if factor != 0.0:
+                for j in range(columns):
+                    B[i, j] -= factor * B[k, j]
+    for k in range(size - 1, -1, -1):
+        for i in range(k + 1, size):
+            factor = D[k, i]
+            if factor != 0.0:
+                for j in range(columns):
+                    B[k, j] -= factor * B[i, j]
+        for j in range(columns):
+            B[k, j] *= D[k, k]
 
-    U holds six columns for the parent and a seventh for the right-hand side.
-    """
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _scatter(
+    ends: Integers, outer: Integers, slot: Integers, scale: float, direction: Array,
+    tangent: Array, D: Array, U: Array, L: Array,
+) -> None:  # fmt: skip
+    """Add the pairs to the diagonal blocks D, the outer rows U and the inner rows L of the tree."""
     for e in range(len(ends)):
         inner = ends[e, 0] + ends[e, 1] - outer[e]
         o = 0 if outer[e] == ends[e, 0] else 6
@@ -158,35 +173,48 @@ def _scatter(
                 for a in range(6):
                     D[i, row, a] = D[i, a, row] = scale * direction[e, k, o + a]
                     U[i, row, a] = L[i, a, row] = scale * direction[e, k, p + a]
-                U[i, row, 6] = -scale * motion[e, k]
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _solve_tree(
-    order: Integers, parent: Integers, size: Integers, D: Array, U: Array, L: Array
-) -> int:
-    """Eliminate the leaves first, then substitute outwards; the solution is U[:, :, 6].
-
-    Returns the node at which the matrix is singular, or -1.
-    """
+def _factorise_tree(
+    order: Integers, parent: Integers, size: Integers, D: Array, U: Array, L: Array,
+    pivot: Integers,
+) -> int:  # fmt: skip
+    """Eliminate the leaves first; returns the node at which the matrix is singular, or -1."""
     for i in order:
         s, p = size[i], parent[i]
-        if not _eliminate(D[i], U[i], s, 7):
+        if not _factorise_block(D[i], pivot[i], s):
             return i
+        _substitute_block(D[i], pivot[i], s, U[i])
         if p != 0:
             for a in range(6):
                 for k in range(s):
                     factor = L[i, a, k]
-                    for b in range(6):
-                        D[p, a, b] -= factor * U[i, k, b]
-                    U[p, a, 6] -= factor * U[i, k, 6]
+                    if factor != 0.0:
+                        for b in range(6):
+                            D[p, a, b] -= factor * U[i, k, b]
+    return -1
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _substitute_tree(
+    order: Integers, parent: Integers, size: Integers, D: Array, U: Array, L: Array,
+    pivot: Integers, b: Array,
+) -> None:  # fmt: skip
+    """b (n,widest,1) <- the solution: inwards from the leaves, then outwards."""
+    for i in order:
+        s, p = size[i], parent[i]
+        _substitute_block(D[i], pivot[i], s, b[i])
+        if p != 0:
+            for a in range(6):
+                for k in range(s):
+                    b[p, a, 0] -= L[i, a, k] * b[i, k, 0]
     for i in order[::-1]:
         p = parent[i]
         if p != 0:
             for k in range(size[i]):
-                for b in range(6):
-                    U[i, k, 6] -= U[i, k, b] * U[p, b, 6]
-    return -1
+                for a in range(6):
+                    b[i, k, 0] -= U[i, k, a] * b[p, a, 0]
 
 
 class TreeSolver:
@@ -204,28 +232,34 @@ class TreeSolver:
             self.size[self.outer[e]] += pairs.locked[e].sum()
         widest = int(self.size.max())
         self.locked = pairs.locked
-        self.D = np.zeros((n, widest, widest))
-        self.U = np.zeros((n, widest, 7))
-        self.L = np.zeros((n, 6, widest))
+        owner = np.broadcast_to(self.outer[:, None], self.slot.shape)
+        self.rows = owner[self.locked], self.slot[self.locked]
+        self.D, self.U = np.zeros((n, widest, widest)), np.zeros((n, widest, 6))
+        self.L, self.b = np.zeros((n, 6, widest)), np.zeros((n, widest, 1))
+        self.pivot = np.zeros((n, widest), dtype=np.int64)
+        self.scale = 1.0
 
-    def solve(
-        self, nodes: Array, answer: PairAnswer, residual: Array, scale: float, rows: Rows | None
-    ) -> tuple[Array, Array, Array]:
-        D, U, L = self.D, self.U, self.L
+    def factorise(self, nodes: Array, answer: PairAnswer, scale: float, rows: Rows | None) -> None:
+        D, U, L, self.scale = self.D, self.U, self.L, scale
         D[:], U[:], L[:] = 0.0, 0.0, 0.0
         D[:, :6, :6] = nodes
-        U[:, :6, 6] = -residual
-        _scatter(
-            self.ends, self.outer, self.slot, scale, answer.direction, answer.tangent,
-            answer.motion, D, U, L,
-        )  # fmt: skip
-        failed = _solve_tree(self.order, self.parent, self.size, D, U, L)
+        _scatter(self.ends, self.outer, self.slot, scale, answer.direction, answer.tangent, D, U, L)
+        failed = _factorise_tree(self.order, self.parent, self.size, D, U, L, self.pivot)
         if failed >= 0:
             raise singular(self.names[failed])
-        variation = U[:, :6, 6].copy()
+
+    def solve(self, residual: Array, motion: Array, values: Array) -> Solution:
+        b = self.b
+        b[:, :6, 0] = -residual
+        b[:, 6:] = 0.0
+        b[(*self.rows, 0)] = -self.scale * motion[self.locked]
+        _substitute_tree(
+            self.order, self.parent, self.size, self.D, self.U, self.L, self.pivot, b
+        )  # fmt: skip
+        variation = b[:, :6, 0].copy()
         variation[0] = 0.0
         multiplier = np.zeros(self.slot.shape)
-        multiplier[self.locked] = scale * U[self.outer[:, None], self.slot, 6][self.locked]
+        multiplier[self.locked] = self.scale * b[(*self.rows, 0)]
         return variation, multiplier, np.zeros(0)
 
 
@@ -277,17 +311,17 @@ class SparseSolver:
         keep = (i >= 6) & (j >= 6)
         return csc_matrix((values[keep], (i[keep] - 6, j[keep] - 6)), shape=(size - 6, size - 6))
 
-    def solve(
-        self, nodes: Array, answer: PairAnswer, residual: Array, scale: float, rows: Rows | None
-    ) -> tuple[Array, Array, Array]:
-        extra = np.zeros(0) if rows is None else rows.residual
-        right = -np.concatenate(
-            [residual[1:].ravel(), scale * answer.motion[self.locked], scale * extra]
-        )
+    def factorise(self, nodes: Array, answer: PairAnswer, scale: float, rows: Rows | None) -> None:
+        self.scale = scale
         try:
-            solution = splu(self.matrix(nodes, answer, scale, rows)).solve(right)
+            self.factors = splu(self.matrix(nodes, answer, scale, rows))
         except RuntimeError:
             raise singular("structure") from None
+
+    def solve(self, residual: Array, motion: Array, values: Array) -> Solution:
+        scale = self.scale
+        right = [residual[1:].ravel(), scale * motion[self.locked], scale * values]
+        solution = self.factors.solve(-np.concatenate(right))
         if not np.isfinite(solution).all():
             raise singular("structure")
         n, held = 6 * (self.n - 1), int(self.locked.sum())

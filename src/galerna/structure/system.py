@@ -15,14 +15,15 @@ from functools import cached_property
 import numpy as np
 from numba import njit
 
-from galerna.contract import Array, Loads, Motion
+from galerna.contract import Array, Motion
 from galerna.errors import InputError, did_you_mean
 
 from .constraints import Constraint, constraint_rows
+from .forces import Forces, add_load_tangents
 from .frames import adjoint
 from .inertia import node_balance
-from .pairs import Integers, PairAnswer, Pairs, answer, empty_answer, node_wrenches
-from .solvers import LinearSolver, Rows, choose_solver
+from .pairs import Integers, PairAnswer, Pairs, answer, empty_answer, respond
+from .solvers import LinearSolver, Rows, Solution, choose_solver
 
 
 @dataclass(eq=False, slots=True)
@@ -57,56 +58,6 @@ class State:
 
 
 ARRAYS = tuple(name for name in State.__dataclass_fields__ if name != "time")
-
-
-@dataclass(eq=False, slots=True)
-class Forces:
-    """Loads on all n frames: ``dead`` (n,6) in global and ``follower`` (n,6) in body axes.
-
-    ``stiffness``, ``damping`` and ``mass`` (n,6,6), where given, are minus the
-    derivatives of the dead loads over motion, velocity and acceleration in global axes.
-    """
-
-    dead: Array
-    follower: Array
-    stiffness: Array | None = None
-    damping: Array | None = None
-    mass: Array | None = None
-
-    @classmethod
-    def none(cls, n: int) -> Forces:
-        return cls(np.zeros((n, 6)), np.zeros((n, 6)))
-
-    @classmethod
-    def of(cls, n: int, nodes: Integers, loads: Loads) -> Forces:
-        """A load model's answer on the frames ``nodes`` (k,), each of which may repeat."""
-        forces = cls.none(n)
-        np.add.at(forces.dead, nodes, np.hstack([loads.force, loads.moment]))
-        for name in ("stiffness", "damping", "mass"):
-            blocks = getattr(loads, name)
-            if blocks is not None:
-                total = np.zeros((n, 6, 6))
-                np.add.at(total, nodes, blocks)
-                setattr(forces, name, total)
-        return forces
-
-    def scaled(self, factor: float) -> Forces:
-        """The loads times a factor."""
-        blocks = (
-            None if b is None else factor * b for b in (self.stiffness, self.damping, self.mass)
-        )
-        return Forces(factor * self.dead, factor * self.follower, *blocks)
-
-    def check(self, n: int) -> None:
-        """Raise InputError where an array does not belong to n frames."""
-        for name in Forces.__dataclass_fields__:
-            values = getattr(self, name)
-            shape = (n, 6) if name in ("dead", "follower") else (n, 6, 6)
-            if values is not None and np.shape(values) != shape:
-                raise InputError(
-                    f"forces, {name}", f"shape {np.shape(values)}, the system needs {shape}",
-                    "one row for each frame, the ground's first",
-                )  # fmt: skip
 
 
 LoadFunction = Callable[[State], Forces]
@@ -227,13 +178,35 @@ class System:
             state.rotation, state.velocity, state.acceleration,
             velocity_tangent, acceleration_tangent, residual, nodes,
         )  # fmt: skip
-        _add_load_tangents(
+        add_load_tangents(
             forces, state.rotation, state.velocity, velocity_tangent, acceleration_tangent, nodes
         )
         pairs = answer(
             self.pairs, state.multiplier, state.position, state.rotation, state.velocity,
             velocity_tangent, self._room, carried,
         )  # fmt: skip
+        rows = self._add_internal(state, pairs, velocity_tangent, residual)
+        return Balance(residual, nodes, pairs, rows)
+
+    def residual(self, state: State, forces: Forces) -> Balance:
+        """As ``balance``, at the time of its last call and without tangents."""
+        residual, none = np.empty((len(self), 6)), np.empty((0, 6, 6))
+        node_balance(
+            self.mass, self.weight, self.gravity, forces.dead, forces.follower, state.rotation,
+            state.velocity, state.acceleration, none, none, residual, none,
+        )  # fmt: skip
+        pairs = respond(
+            self.pairs, state.multiplier, state.position, state.rotation, state.velocity,
+            self._room,
+        )  # fmt: skip
+        velocity_tangent = self.still() if self.constraints else none
+        rows = self._add_internal(state, pairs, velocity_tangent, residual)
+        return Balance(residual, none, pairs, rows)
+
+    def _add_internal(
+        self, state: State, pairs: PairAnswer, velocity_tangent: Array, residual: Array
+    ) -> Rows | None:
+        """Add the wrenches of pairs and constraints to the nodes' residual (n,6)."""
         _add_pairs(self.pairs.ends, pairs.node_wrench, residual)
         rows = None
         if self.constraints:
@@ -243,13 +216,21 @@ class System:
             )  # fmt: skip
             residual += force.reshape(-1, 6)
         residual[0] = 0.0
-        return Balance(residual, nodes, pairs, rows)
+        return rows
 
-    def solve(self, balance: Balance, scale: float) -> tuple[Array, Array, Array]:
+    def factorise(self, balance: Balance, scale: float) -> None:
+        """Keep the matrix of a balance, constraints weighed with ``scale``, for ``correction``."""
+        self.solver.factorise(balance.nodes, balance.pairs, scale, balance.rows)
+
+    def correction(self, balance: Balance) -> Solution:
+        """Variations (n,6), pair and constraint multipliers, with the matrix last factorised."""
+        values = np.zeros(0) if balance.rows is None else balance.rows.residual
+        return self.solver.solve(balance.residual, balance.pairs.motion, values)
+
+    def solve(self, balance: Balance, scale: float) -> Solution:
         """Newton's correction: variations (n,6), pair and constraint multipliers."""
-        return self.solver.solve(
-            balance.nodes, balance.pairs, balance.residual, scale, balance.rows
-        )
+        self.factorise(balance, scale)
+        return self.correction(balance)
 
     @cached_property
     def stiffness_scale(self) -> float:
@@ -307,13 +288,6 @@ class System:
             self.still(), empty_answer(len(self.pairs.ends)),
         )  # fmt: skip
 
-    def node_wrenches(self, state: State) -> Array:
-        """Wrenches (m,12) of the pairs in the residual of their nodes, in the nodes' axes."""
-        self.set_time(state.time)
-        return node_wrenches(
-            self.pairs, state.multiplier, state.position, state.rotation, state.velocity
-        )
-
     def internal_loads(self, state: State, beam: str, forces: Forces | None = None) -> Array:
         """Force N and moment N m (n+1,6) that the outer part of a beam puts on the inner one.
 
@@ -326,13 +300,13 @@ class System:
             beams = {name.partition(":")[0] for name in self.pair_names if ":" in name}
             raise InputError(beam, "no such beam", did_you_mean(beam, beams))
         wrench = self.pair_answer(state).node_wrench[elements]
-        wrench[0, :6] += self.root_balance(state, self.roots[beam], forces)
+        wrench[0, :6] += self._root_balance(state, self.roots[beam], forces)
         root = elements[0]
         place = self.pairs.offset_rotation[root, 0], self.pairs.offset_position[root, 0]
         wrench[0, :6] = adjoint(*place).T @ wrench[0, :6]
         return np.vstack([-wrench[:, :6], wrench[-1:, 6:]])
 
-    def root_balance(self, state: State, root: Root, forces: Forces | None = None) -> Array:
+    def _root_balance(self, state: State, root: Root, forces: Forces | None) -> Array:
         """Inertia minus weight and loads (6,) of a beam's root, in the axes of its frame."""
         forces = forces or Forces.none(len(self))
         forces.check(len(self))
@@ -384,34 +358,3 @@ def with_spin(
         resting = np.setdiff1d(np.arange(len(velocity)), nodes)
         velocity[resting] = 0.0
     return replace(state, velocity=velocity, acceleration=np.zeros_like(state.acceleration))
-
-
-def _add_load_tangents(
-    forces: Forces, R: Array, v: Array, velocity_tangent: Array, acceleration_tangent: Array,
-    nodes: Array,
-) -> None:  # fmt: skip
-    """Add stiff loads' blocks, turned from global into body axes."""
-    if forces.stiffness is None and forces.damping is None and forces.mass is None:
-        return
-    if forces.stiffness is not None:
-        nodes += in_body_axes(forces.stiffness, R)
-    # a variation turns the body's axes, in which v is given, and with them the global velocity
-    rotated = np.zeros_like(nodes)
-    rotated[:, :3, 3:] = -hats(v[:, :3])
-    rotated[:, 3:, 3:] = -hats(v[:, 3:])
-    if forces.damping is not None:
-        nodes += in_body_axes(forces.damping, R) @ (velocity_tangent + rotated)
-    if forces.mass is not None:
-        nodes += in_body_axes(forces.mass, R) @ acceleration_tangent
-
-
-def in_body_axes(blocks: Array, R: Array) -> Array:
-    """Blocks (n,6,6) given in global axes, in the axes of the frames."""
-    turn = np.zeros((len(R), 6, 6))
-    turn[:, :3, :3] = turn[:, 3:, 3:] = R
-    return turn.transpose(0, 2, 1) @ blocks @ turn
-
-
-def hats(a: Array) -> Array:
-    """Cross-product matrices (n,3,3) of vectors (n,3)."""
-    return np.cross(np.eye(3)[None], a[:, None, :])

@@ -1,0 +1,93 @@
+"""Loads on the frames, and what they add to the tangents."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from galerna.contract import Array, Loads
+from galerna.errors import InputError
+
+from .pairs import Integers
+
+
+@dataclass(eq=False, slots=True)
+class Forces:
+    """Loads on all n frames: ``dead`` (n,6) in global and ``follower`` (n,6) in body axes.
+
+    ``stiffness``, ``damping`` and ``mass`` (n,6,6), where given, are minus the
+    derivatives of the dead loads over motion, velocity and acceleration in global axes.
+    """
+
+    dead: Array
+    follower: Array
+    stiffness: Array | None = None
+    damping: Array | None = None
+    mass: Array | None = None
+
+    @classmethod
+    def none(cls, n: int) -> Forces:
+        return cls(np.zeros((n, 6)), np.zeros((n, 6)))
+
+    @classmethod
+    def of(cls, n: int, nodes: Integers, loads: Loads) -> Forces:
+        """A load model's answer on the frames ``nodes`` (k,), each of which may repeat."""
+        forces = cls.none(n)
+        np.add.at(forces.dead, nodes, np.hstack([loads.force, loads.moment]))
+        for name in ("stiffness", "damping", "mass"):
+            blocks = getattr(loads, name)
+            if blocks is not None:
+                total = np.zeros((n, 6, 6))
+                np.add.at(total, nodes, blocks)
+                setattr(forces, name, total)
+        return forces
+
+    def scaled(self, factor: float) -> Forces:
+        """The loads times a factor."""
+        blocks = (
+            None if b is None else factor * b for b in (self.stiffness, self.damping, self.mass)
+        )
+        return Forces(factor * self.dead, factor * self.follower, *blocks)
+
+    def check(self, n: int) -> None:
+        """Raise InputError where an array does not belong to n frames."""
+        for name in Forces.__dataclass_fields__:
+            values = getattr(self, name)
+            shape = (n, 6) if name in ("dead", "follower") else (n, 6, 6)
+            if values is not None and np.shape(values) != shape:
+                raise InputError(
+                    f"forces, {name}", f"shape {np.shape(values)}, the system needs {shape}",
+                    "one row for each frame, the ground's first",
+                )  # fmt: skip
+
+
+def add_load_tangents(
+    forces: Forces, R: Array, v: Array, velocity_tangent: Array, acceleration_tangent: Array,
+    nodes: Array,
+) -> None:  # fmt: skip
+    """Add stiff loads' blocks, turned from global into body axes."""
+    if forces.stiffness is None and forces.damping is None and forces.mass is None:
+        return
+    if forces.stiffness is not None:
+        nodes += in_body_axes(forces.stiffness, R)
+    # a variation turns the body's axes, in which v is given, and with them the global velocity
+    rotated = np.zeros_like(nodes)
+    rotated[:, :3, 3:] = -hats(v[:, :3])
+    rotated[:, 3:, 3:] = -hats(v[:, 3:])
+    if forces.damping is not None:
+        nodes += in_body_axes(forces.damping, R) @ (velocity_tangent + rotated)
+    if forces.mass is not None:
+        nodes += in_body_axes(forces.mass, R) @ acceleration_tangent
+
+
+def in_body_axes(blocks: Array, R: Array) -> Array:
+    """Blocks (n,6,6) given in global axes, in the axes of the frames."""
+    turn = np.zeros((len(R), 6, 6))
+    turn[:, :3, :3] = turn[:, 3:, 3:] = R
+    return turn.transpose(0, 2, 1) @ blocks @ turn
+
+
+def hats(a: Array) -> Array:
+    """Cross-product matrices (n,3,3) of vectors (n,3)."""
+    return np.cross(np.eye(3)[None], a[:, None, :])
