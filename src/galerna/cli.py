@@ -65,6 +65,20 @@ def check(case: CaseArgument) -> None:
     commands.check(case)
 
 
+@app.command(epilog=example("galerna channels controlled 'blade_root_*'"))
+def channels(
+    case: CaseArgument,
+    pattern: Annotated[
+        str | None,
+        typer.Argument(help="A name or pattern with * and ?, of galerna or of OpenFAST."),
+    ] = None,
+) -> None:
+    """List the channels of a case's result, with OpenFAST's names."""
+    from galerna import commands
+
+    commands.list_channels(case, pattern)
+
+
 @app.command(epilog=example("galerna demo"))
 def demo(
     folder: Annotated[

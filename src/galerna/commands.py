@@ -132,6 +132,14 @@ def check(case: str) -> None:
     print(f"{loaded.document.name}: ready to run")
 
 
+def list_channels(case: str, pattern: str | None) -> None:
+    """The channels of a case that a pattern names, all without one."""
+    from galerna.case import load
+    from galerna.channel_list import chosen
+
+    tables.print_channels(*chosen(load(case), pattern))
+
+
 def demo(folder: Path, duration: float | None) -> None:
     """Run the demonstration case into a folder of its own, and draw it."""
     from galerna import running

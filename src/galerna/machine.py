@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from fnmatch import fnmatchcase
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
@@ -16,8 +15,9 @@ from galerna.aero.bem.model import BladeElementMomentum
 from galerna.aero.bem.options import BemOptions
 from galerna.aero.body_drag import BodyDrag
 from galerna.case import Case, LoadedCase, Series, parse
+from galerna.channel_names import matching, nearest
 from galerna.contract import Array, Channel, LoadModel
-from galerna.errors import InputError, did_you_mean
+from galerna.errors import InputError
 from galerna.inflow.build import BuiltInflow, build
 from galerna.inflow.sizing import RotorExtent
 from galerna.kinematics import PrescribedMotion, PrescribedOperation
@@ -114,7 +114,7 @@ def build_machine(case: LoadedCase) -> Machine:
     with case.blame("operation"):
         operation = _operation(case, turbine, wind.mean_speed)
     with case.blame("aerodynamics"):
-        models = _load_models(case, turbine, wind, operation)
+        models = load_models(case, turbine, wind, operation)
     stations = [model.stations for model in models.values()]
     structure: Structure
     commander: Commander | None = None
@@ -168,9 +168,10 @@ def wind_of_result(dataset: xarray.Dataset) -> WindField:
     return build_wind(lasting, load_turbine(lasting)).field
 
 
-def _load_models(
+def load_models(
     case: LoadedCase, turbine: Turbine, wind: BuiltInflow, operation: PrescribedOperation
 ) -> dict[str, LoadModel]:
+    """The loads on the machine of a case, by name."""
     settings, density = case.case, case.case.air_density_kg_m3
     rotor: LoadModel
     if isinstance(settings.aerodynamics, BemOptions):
@@ -250,12 +251,15 @@ def _signal(value: float | Series, unit: float) -> Signal:
 def _chosen_channels(case: LoadedCase, simulation: Simulation) -> tuple[Channel, ...]:
     """The channels that the case's patterns name; InputError for a pattern that names none."""
     patterns, available = case.case.outputs.channels, simulation.channels
+    found: set[str] = set()
     for i, pattern in enumerate(patterns):
-        if not any(fnmatchcase(channel.name, pattern) for channel in available):
-            hint = did_you_mean(pattern, [channel.name for channel in available])
+        chosen = matching(pattern, available)
+        if not chosen:
             with case.blame("outputs", "channels", i):
+                hint = nearest(pattern, available)
                 raise InputError(repr(pattern), "no channel has this name", hint)
-    return tuple(c for c in available if any(fnmatchcase(c.name, p) for p in patterns))
+        found.update(channel.name for channel in chosen)
+    return tuple(channel for channel in available if channel.name in found)
 
 
 class HubWindProbe:

@@ -199,7 +199,7 @@ def test_a_bent_blade_carries_a_tip_load_with_its_lever() -> None:
     loads = Loads.zero(3 * len(SPAN))
     loads.force[len(SPAN) - 1] = force
 
-    def of_state(state):  # noqa: ANN001, ANN202
+    def of_state(state):
         machine._follow(state)
         return machine.forces([loads])
 

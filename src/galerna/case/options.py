@@ -27,6 +27,7 @@ from galerna.structure.options import StructureOptions
 from galerna.units import AIR_DENSITY
 
 DEFAULT_INTERVAL = 0.1  #: s
+Fraction = Annotated[FiniteFloat, Field(ge=0.0, le=1.0)]
 
 
 class Block(BaseModel):
@@ -154,7 +155,22 @@ class Outputs(Block):
         0.0, description="Records before this time are left out: the start-up transient."
     )
     channels: tuple[str, ...] = Field(
-        ("*",), min_length=1, description="Channel names, or patterns with * and ?."
+        ("*",),
+        min_length=1,
+        description="Channel names, or patterns with * and ?; OpenFAST's names will do. "
+        "`galerna channels CASE` lists them.",
+    )
+    blade_stations: tuple[Fraction, ...] = Field(
+        (0.25, 0.5, 0.75),
+        min_length=1,
+        description="Where loads and displacements of flexible blades are shown, as fractions of "
+        "the blade's axis.",
+    )
+    tower_stations: tuple[Fraction, ...] = Field(
+        (0.5,),
+        min_length=1,
+        description="Where loads and displacements of a flexible tower are shown, as fractions "
+        "of its axis.",
     )
 
 

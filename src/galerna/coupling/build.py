@@ -11,6 +11,7 @@ from galerna.coupling.control_loop import ControlLoop
 from galerna.coupling.controllers import controller, held_inertia, pitch_actuator, sample_time
 from galerna.coupling.flexible import FlexibleMachine
 from galerna.coupling.paths import SignalPath, StepPath
+from galerna.coupling.sensors import Gauges
 from galerna.coupling.trim import start_turning
 from galerna.kinematics import PrescribedOperation
 from galerna.structure import Scheme, TurbineOptions
@@ -51,6 +52,7 @@ def moving_machine(
             gravity=(0.0, 0.0, -options.gravity_m_s2),
         ),
         scheme=Scheme.generalized_alpha(options.rho_inf),
+        gauges=Gauges(settings.outputs.blade_stations, settings.outputs.tower_stations),
     )
     start_turning(machine, float(speed.value[0]))
     return machine

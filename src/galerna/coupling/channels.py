@@ -46,28 +46,29 @@ def acceleration(name: str, text: str, openfast: str, dims: tuple[str, ...] = ()
 
 
 BLADE_ROOT = (
-    force("blade_root_out_of_plane_shear", "root force along x, coned axes", "RootFxc{blade}",
+    force("blade_root_out_of_plane_shear", "blade-root force along x, coned axes", "RootFxc{blade}",
           PER_BLADE),
-    force("blade_root_in_plane_shear", "root force along y, coned axes", "RootFyc{blade}",
+    force("blade_root_in_plane_shear", "blade-root force along y, coned axes", "RootFyc{blade}",
           PER_BLADE),
-    force("blade_root_axial_force", "root force along the pitch axis", "RootFzc{blade}",
+    force("blade_root_axial_force", "blade-root force along the pitch axis", "RootFzc{blade}",
           PER_BLADE),
-    moment("blade_root_in_plane_moment", "root moment about x, coned axes: of in-plane forces",
+    moment("blade_root_in_plane_moment", "in-plane moment at the blade root: about x, coned axes",
            "RootMxc{blade}", PER_BLADE),
     moment("blade_root_out_of_plane_moment",
-           "root moment about y, coned axes: of out-of-plane forces", "RootMyc{blade}", PER_BLADE),
-    moment("blade_root_torsion_moment", "root moment about the pitch axis", "RootMzc{blade}",
+           "out-of-plane moment at the blade root: about y, coned axes", "RootMyc{blade}",
+           PER_BLADE),
+    moment("blade_root_torsion_moment", "blade-root moment about the pitch axis", "RootMzc{blade}",
            PER_BLADE),
 )  # fmt: skip
 BLADE_ROOT_PITCHING = (
-    force("blade_root_flapwise_shear", "root force along x, pitching axes", "RootFxb{blade}",
+    force("blade_root_flapwise_shear", "blade-root force along x, pitching axes", "RootFxb{blade}",
           PER_BLADE),
-    force("blade_root_edgewise_shear", "root force along y, pitching axes", "RootFyb{blade}",
+    force("blade_root_edgewise_shear", "blade-root force along y, pitching axes", "RootFyb{blade}",
           PER_BLADE),
-    moment("blade_root_edgewise_moment", "root moment about x, pitching axes", "RootMxb{blade}",
-           PER_BLADE),
-    moment("blade_root_flapwise_moment", "root moment about y, pitching axes", "RootMyb{blade}",
-           PER_BLADE),
+    moment("blade_root_edgewise_moment", "edgewise moment at the root: about x, pitching axes",
+           "RootMxb{blade}", PER_BLADE),
+    moment("blade_root_flapwise_moment", "flapwise moment at the root: about y, pitching axes",
+           "RootMyb{blade}", PER_BLADE),
 )  # fmt: skip
 BLADE_TIP = (
     length("tip_out_of_plane_displacement", "tip displacement along x, coned axes",
@@ -92,27 +93,27 @@ BLADE_TIP = (
     length("tip_tower_clearance", "from the tip to the tower's surface", "", PER_BLADE),
 )  # fmt: skip
 BLADE_SECTION_DISPLACEMENTS = (
-    length("blade_flapwise_displacement", "displacement along x, pitching axes",
+    length("blade_flapwise_displacement", "blade displacement along x, pitching axes",
            "Spn{node}TDxb{blade}", ALONG_BLADE),
-    length("blade_edgewise_displacement", "displacement along y, pitching axes",
+    length("blade_edgewise_displacement", "blade displacement along y, pitching axes",
            "Spn{node}TDyb{blade}", ALONG_BLADE),
-    length("blade_axial_displacement", "displacement along the pitch axis",
+    length("blade_axial_displacement", "blade displacement along the pitch axis",
            "Spn{node}TDzb{blade}", ALONG_BLADE),
-    angle("blade_twist", "elastic twist, towards feather", "Spn{node}RDzb{blade}", ALONG_BLADE,
-          sign=-1.0),
+    angle("blade_twist", "elastic twist of the blade, towards feather",
+          "Spn{node}RDzb{blade}", ALONG_BLADE, sign=-1.0),
 )  # fmt: skip
 BLADE_SECTION_LOADS = (
-    force("blade_flapwise_shear", "section force along x, section axes", "Spn{node}FLxb{blade}",
+    force("blade_flapwise_shear", "blade force along x, section axes", "Spn{node}FLxb{blade}",
           ALONG_BLADE),
-    force("blade_edgewise_shear", "section force along y, section axes", "Spn{node}FLyb{blade}",
+    force("blade_edgewise_shear", "blade force along y, section axes", "Spn{node}FLyb{blade}",
           ALONG_BLADE),
-    force("blade_axial_force", "section force along the span", "Spn{node}FLzb{blade}",
+    force("blade_axial_force", "blade force along the span", "Spn{node}FLzb{blade}",
           ALONG_BLADE),
-    moment("blade_edgewise_moment", "section moment about x, section axes",
+    moment("blade_edgewise_moment", "blade moment about x, section axes",
            "Spn{node}MLxb{blade}", ALONG_BLADE),
-    moment("blade_flapwise_moment", "section moment about y, section axes",
+    moment("blade_flapwise_moment", "blade moment about y, section axes",
            "Spn{node}MLyb{blade}", ALONG_BLADE),
-    moment("blade_torsion_moment", "section moment about the span", "Spn{node}MLzb{blade}",
+    moment("blade_torsion_moment", "blade moment about the span", "Spn{node}MLzb{blade}",
            ALONG_BLADE),
 )  # fmt: skip
 SHAFT = (
@@ -131,11 +132,11 @@ SHAFT = (
     Channel("shaft_power", "W", "power through the low-speed shaft", (), "RotPwr", "kW", KILO),
 )  # fmt: skip
 NACELLE = (
-    acceleration("nacelle_acceleration_x", "on the shaft above the yaw axis, along the shaft",
+    acceleration("nacelle_acceleration_x", "acceleration above the yaw axis, along the shaft",
                  "NcIMUTAxs"),
-    acceleration("nacelle_acceleration_y", "on the shaft above the yaw axis, sideways",
+    acceleration("nacelle_acceleration_y", "acceleration above the yaw axis, sideways",
                  "NcIMUTAys"),
-    acceleration("nacelle_acceleration_z", "on the shaft above the yaw axis, upwards across it",
+    acceleration("nacelle_acceleration_z", "acceleration above the yaw axis, upwards across it",
                  "NcIMUTAzs"),
 )  # fmt: skip
 YAW_BEARING = (
@@ -161,9 +162,9 @@ TOWER_TOP = (
     angle("tower_top_roll", "tower-top rotation about x", "TTDspRoll"),
     angle("tower_top_pitch", "tower-top rotation about y", "TTDspPtch"),
     angle("tower_top_twist", "tower-top rotation about z", "TTDspTwst"),
-    acceleration("tower_top_fore_aft_acceleration", "along x of the tower's top", "YawBrTAxp"),
-    acceleration("tower_top_side_side_acceleration", "along y of the tower's top", "YawBrTAyp"),
-    acceleration("tower_top_vertical_acceleration", "along z of the tower's top", "YawBrTAzp"),
+    acceleration("tower_top_fore_aft_acceleration", "tower-top acceleration along x", "YawBrTAxp"),
+    acceleration("tower_top_side_side_acceleration", "tower-top acceleration along y", "YawBrTAyp"),
+    acceleration("tower_top_vertical_acceleration", "tower-top acceleration along z", "YawBrTAzp"),
 )  # fmt: skip
 TOWER_BASE = (
     force("tower_base_fore_aft_shear", "tower-base force along x", "TwrBsFxt"),
@@ -174,17 +175,21 @@ TOWER_BASE = (
     moment("tower_base_torsion_moment", "tower-base moment about z", "TwrBsMzt"),
 )
 TOWER_SECTION_LOADS = (
-    force("tower_fore_aft_shear", "section force along x", "TwHt{node}FLxt", ALONG_TOWER),
-    force("tower_side_side_shear", "section force along y", "TwHt{node}FLyt", ALONG_TOWER),
-    force("tower_axial_force", "section force along z", "TwHt{node}FLzt", ALONG_TOWER),
-    moment("tower_side_side_moment", "section moment about x", "TwHt{node}MLxt", ALONG_TOWER),
-    moment("tower_fore_aft_moment", "section moment about y", "TwHt{node}MLyt", ALONG_TOWER),
-    moment("tower_torsion_moment", "section moment about z", "TwHt{node}MLzt", ALONG_TOWER),
+    force("tower_fore_aft_shear", "tower force along x", "TwHt{node}FLxt", ALONG_TOWER),
+    force("tower_side_side_shear", "tower force along y", "TwHt{node}FLyt", ALONG_TOWER),
+    force("tower_axial_force", "tower force along z", "TwHt{node}FLzt", ALONG_TOWER),
+    moment("tower_side_side_moment", "tower moment about x", "TwHt{node}MLxt", ALONG_TOWER),
+    moment("tower_fore_aft_moment", "tower moment about y", "TwHt{node}MLyt", ALONG_TOWER),
+    moment("tower_torsion_moment", "tower moment about z", "TwHt{node}MLzt", ALONG_TOWER),
 )
 TOWER_SECTION_DISPLACEMENTS = (
-    length("tower_fore_aft_displacement", "displacement along x", "TwHt{node}TDxt", ALONG_TOWER),
-    length("tower_side_side_displacement", "displacement along y", "TwHt{node}TDyt", ALONG_TOWER),
-    length("tower_axial_displacement", "displacement along z", "TwHt{node}TDzt", ALONG_TOWER),
+    length(
+        "tower_fore_aft_displacement", "tower displacement along x", "TwHt{node}TDxt", ALONG_TOWER
+    ),
+    length(
+        "tower_side_side_displacement", "tower displacement along y", "TwHt{node}TDyt", ALONG_TOWER
+    ),
+    length("tower_axial_displacement", "tower displacement along z", "TwHt{node}TDzt", ALONG_TOWER),
 )
 BASE = (
     length("platform_surge", "displacement of the base along x", "PtfmSurge"),

@@ -122,6 +122,9 @@ class ControlLoop:
             yaw=yaw,
             yaw_error=wrapped(yaw - float(np.arctan2(wind[1], wind[0]))),
             wind_speed=float(np.sqrt(wind @ wind)),
+            root_moments=machine.root_moments(),
+            tower_top_acceleration=machine.tower_top_acceleration(),
+            platform=machine.platform_motion(),
         )
 
     def _demanded(self, time: float) -> Demands:

@@ -13,6 +13,7 @@ import numpy as np
 
 from galerna.contract import Array, Loads, Stations
 from galerna.coupling.paths import StepPath
+from galerna.coupling.sensors import Gauges, Sensors, rows_of
 from galerna.errors import InputError, did_you_mean
 from galerna.kinematics import CHANNELS
 from galerna.structure.attachment import Attachment
@@ -65,6 +66,14 @@ def _placed(
     return ends, fraction, origin + position @ axes.T, axes @ rotation
 
 
+def _riding(
+    turbine: Turbine, system: TurbineSystem, group: Sequence[Stations], part: str
+) -> tuple[Attachment, Integers] | None:
+    """A load model's stations on one part, and their rows in its loads."""
+    chosen, rows = rows_of(group, part)
+    return (attach(turbine, system, chosen), rows) if chosen else None
+
+
 class FlexibleMachine:
     """A turbine's structure under its load models; see ``simulation.Structure``.
 
@@ -72,8 +81,6 @@ class FlexibleMachine:
     ``options.pitch_motion`` says, or are moved by ``go_pitch``. Raises InputError for a part
     that the turbine does not have.
     """
-
-    channels = CHANNELS
 
     def __init__(
         self,
@@ -83,10 +90,10 @@ class FlexibleMachine:
         *,
         scheme: Scheme | None = None,
         tolerance: Tolerance | None = None,
+        gauges: Gauges | None = None,
     ) -> None:
         options = options or TurbineOptions()
         blades = turbine.number_of_blades
-        self.coordinates: Mapping[str, Array] = {"blade": np.arange(1.0, blades + 1.0)}
         self._pitch_offset = options.pitch
         self.pitch: tuple[Angle, ...] = options.pitch_motion or tuple(
             StepPath(0.0) for _ in range(blades)
@@ -99,6 +106,12 @@ class FlexibleMachine:
         self._riders = [attach(turbine, self.parts, group) for group in stations]
         self.motions = tuple(riders.motion for riders in self._riders)
         self._forces = Forces.none(len(self.system))
+        self.loads: Sequence[Loads] = ()  #: of the load models, in the last balance
+        tower = [_riding(turbine, self.parts, group, "tower") for group in stations]
+        self.sensors = Sensors(turbine, self.parts, options.pitch, tower, gauges or Gauges())
+        self.channels = CHANNELS + self.sensors.channels
+        numbers = np.arange(1.0, blades + 1.0)
+        self.coordinates: Mapping[str, Array] = {"blade": numbers, **self.sensors.coordinates}
         names = self.system.names
         self._nacelle, self._hub = names.index("nacelle"), names.index("hub")
         self._driven = names.index("generator") if "generator" in names else self._hub
@@ -176,6 +189,7 @@ class FlexibleMachine:
 
     def forces(self, loads: Sequence[Loads]) -> Forces:
         """Loads on the stations as loads on the frames; the array is used again."""
+        self.loads = loads
         self._forces.follower[:] = 0.0
         for riders, load in zip(self._riders, loads, strict=True):
             riders.add_loads(load, self._forces.follower)
@@ -188,7 +202,20 @@ class FlexibleMachine:
             "azimuth": self.azimuth,
             "pitch": self.pitch_angles(self.accepted.time),
             "yaw": self.yaw,
+            **self.sensors.record(self.accepted, self.loads, self.rotor_speed),
         }
+
+    def root_moments(self) -> Array:
+        """Moments (b,2) N m out of plane and in plane at the blades' roots."""
+        return self.sensors.blades.root_moments(self.accepted)
+
+    def tower_top_acceleration(self) -> Array:
+        """Acceleration (3,) m/s2 of the tower's top in the axes of the nacelle."""
+        return self.sensors.tower.top_acceleration(self.accepted)
+
+    def platform_motion(self) -> Array:
+        """Displacement m and rotation rad (6,) of the base; about z first, about x last."""
+        return self.sensors.tower.base_motion(self.accepted)
 
     def state(self) -> dict[str, np.ndarray]:
         """All that the next step depends on."""

@@ -58,7 +58,7 @@ class TowerSensors:
     @property
     def channels(self) -> tuple[Channel, ...]:
         """Those of a rigid tower, or all; of the base where it can move."""
-        found = c.YAW_BEARING + c.TOWER_TOP + c.TOWER_BASE
+        found: tuple[Channel, ...] = c.YAW_BEARING + c.TOWER_TOP + c.TOWER_BASE
         if self._weights is not None:
             found += c.TOWER_SECTION_DISPLACEMENTS + c.TOWER_SECTION_LOADS
         return found + c.BASE if self.base else found

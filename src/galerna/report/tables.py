@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -11,12 +11,14 @@ from rich.console import Console
 from rich.markup import escape
 from rich.table import Table
 
+from galerna.channel_names import openfast_names
 from galerna.report.rotor import ROTOR_CHANNELS
 from galerna.report.style import shown
 
 if TYPE_CHECKING:
     import xarray
 
+    from galerna.contract import Array, Channel
     from galerna.turbine.summary import Row
 
 
@@ -60,6 +62,21 @@ def print_statistics(dataset: xarray.Dataset, path: Path | None = None) -> None:
         print(f"{len(time)} records from {time[0]:g} to {time[-1]:g} s")
     if path is not None:
         print(f"result: {path}")
+
+
+def print_channels(channels: Iterable[Channel], coordinates: Mapping[str, Array]) -> None:
+    """The table of channels: what each means, its places, and what OpenFAST calls it."""
+    rows = (
+        (
+            channel.name,
+            channel.unit,
+            " x ".join(f"{len(coordinates[dim])} {dim}" for dim in channel.dims),
+            openfast_names(channel),
+            channel.long_name,
+        )
+        for channel in channels
+    )
+    print_rows("", ("channel", "unit", "places", "OpenFAST", "meaning"), rows, numbers_from=5)
 
 
 def print_curve(name: str, curve: xarray.Dataset) -> None:
