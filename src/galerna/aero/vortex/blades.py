@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from galerna.aero.sections import BladeSections, airfoil_blend, blade_sections
+from galerna.aero.vectors import cross_products
 from galerna.aero.vortex.camber import CamberSource, airfoil_line, has_lift
 from galerna.aero.vortex.checks import require_sound_lattice
 from galerna.aero.vortex.spacing import given_edges, panel_edges
@@ -59,7 +60,7 @@ class BladeLattice:
     def velocity(self, rotation: Array, velocity: Array, angular_velocity: Array) -> Array:
         """Velocity (m+1,n+1,3) m/s of the corners as the columns' frames move and turn."""
         arm = np.einsum("nab,mnb->mna", rotation, self.offsets)
-        return velocity + np.cross(angular_velocity, arm)
+        return velocity + cross_products(angular_velocity, arm)
 
 
 def blade_lattice(

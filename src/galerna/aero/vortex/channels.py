@@ -27,9 +27,6 @@ from galerna.aero.rotor_channels import (
     rotor_values,
     strip_channel,
 )
-from galerna.aero.vortex.field import InducedField
-from galerna.aero.vortex.flow import Flow
-from galerna.aero.vortex.mirror import MirrorPlane
 from galerna.aero.vortex.sheet import Sheet
 from galerna.aero.vortex.surface import Surface
 from galerna.contract import Array, Channel
@@ -86,15 +83,13 @@ class StripState:
     drag: Array
 
 
-def effective_air(surface: Surface, circulation: Array, air: Array, induced: Array) -> Array:
+def effective_air(surface: Surface, circulation: Array, relative: Array) -> Array:
     """Eq. (1) for the n strips of a surface, (n,3) m/s.
 
-    ``circulation`` (m,n) of the rings; ``air`` (m,n,3) m/s is wind and wake at the middles of the
-    segments along the span, ``induced`` (m,n,3) the velocity of all bound vortices there.
+    ``circulation`` (m,n) of the rings; ``relative`` (m,n,3) m/s is the air's velocity, all vortices
+    included, at the middles of the segments along the span, relative to them.
     """
     x = surface.lattice.vertices
-    moving = surface.segment_velocity[: circulation.size].reshape(*circulation.shape, 3)
-    relative = air + induced - moving
     strength = Sheet(x, circulation).spanwise_strength[:-1]
     total = strength.sum(axis=0)
     little = np.maximum(CANCELLING * np.abs(strength).sum(axis=0), NO_CIRCULATION)
@@ -102,22 +97,11 @@ def effective_air(surface: Surface, circulation: Array, air: Array, induced: Arr
     return np.einsum("kj,kja->ja", weight, relative)
 
 
-def bound_velocity(surfaces: list[Surface], flow: Flow, mirror: MirrorPlane | None) -> list[Array]:
-    """Velocity (m,n,3) m/s of all bound vortices at the segments along the span, by surface."""
-    sheets = [Sheet(s.lattice.vertices, g) for s, g in zip(surfaces, flow.circulation, strict=True)]
-    field = InducedField(sheets, mirror=mirror)
-    return [
-        field.velocity(0.5 * (s.lattice.vertices[:-1, :-1] + s.lattice.vertices[:-1, 1:]))
-        for s in surfaces
-    ]
-
-
-def air_at_spans(surfaces: list[Surface], flow: Flow) -> list[Array]:
-    """Wind and wake (m,n,3) m/s at the segments along the span, from the control points' order."""
-    air, found = flow.wind + flow.wake_velocity, []
-    first = sum(g.size for g in flow.circulation)
-    for (m, n), strength in ((s.shape, g) for s, g in zip(surfaces, flow.circulation, strict=True)):
-        found.append(air[first : first + strength.size].reshape(m, n, 3))
+def air_along_spans(surfaces: list[Surface], air: Array) -> list[Array]:
+    """Velocity (m,n,3) m/s at the segments along the span, from that at all segments (S,3)."""
+    found, first = [], 0
+    for m, n in (s.shape for s in surfaces):
+        found.append(air[first : first + m * n].reshape(m, n, 3))
         first += m * n + m * (n + 1)
     return found
 

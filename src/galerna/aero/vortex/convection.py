@@ -9,6 +9,10 @@ velocity while a time e elapses:
 
 u_-1 is the velocity that the same fluid had a step h_-1 before, u_1 the velocity it has where
 eq. (1) takes it; u_1 costs another evaluation and serves the accepted step alone.
+
+Behind the near wake panels are wider than a step, and fluid takes several steps to cross one.
+Rows there can take a new velocity once in that period, in turn, and keep that of the fluid
+in between (`due_rows`, eq. 1): most of a wake then moves at a fraction of the cost.
 """
 
 from __future__ import annotations
@@ -17,12 +21,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from galerna.aero.vortex.rotor_axis import RotorAxis
 from galerna.aero.vortex.wake import Wake, interpolated
 from galerna.contract import Array
 from galerna.errors import ConvergenceError
 
+Integers = NDArray[np.int64]
 SCHEMES = ("adams_bashforth", "heun", "euler")
 DIVERGED = 10.0  #: times the highest speed of wind and surfaces that no vortex induces
 
@@ -57,13 +63,17 @@ class Earlier:
     velocity: tuple[Array, ...]
     step: float
 
-    def acceleration(self, velocity: Sequence[Array]) -> tuple[Array, ...]:
-        """Backward difference of the fluid's velocity, zero in row 0."""
+    def acceleration(
+        self, velocity: Sequence[Array], still: NDArray[np.bool_] | None = None
+    ) -> tuple[Array, ...]:
+        """Backward difference of the fluid's velocity, zero in row 0 and in rows ``still``."""
         change = tuple(
             (u - past) / self.step for u, past in zip(velocity, self.velocity, strict=True)
         )
         for a in change:
             a[0] = 0.0
+            if still is not None:
+                a[still] = 0.0
         return change
 
 
@@ -85,22 +95,52 @@ def corrected(start: Sequence[Array], end: Sequence[Array], fraction: Array) -> 
     return tuple(velocities)
 
 
+def periods(ages: Array) -> Integers:
+    """Wake steps (K+1,) in which the fluid crosses the panel upstream of each row, rounded down.
+
+    Row 0 is crossed in every step.
+    """
+    width = np.diff(ages)
+    steps = np.floor(width / width[0] * (1.0 + 1e-9)).astype(np.int64)
+    return np.concatenate([[1], np.maximum(steps, 1)])
+
+
+def due_rows(ages: Array, sheds: int) -> Integers:
+    """Rows whose velocity is renewed after so many ``sheds``: all once in their period, in turn."""
+    period = periods(ages)
+    return np.flatnonzero((sheds + np.arange(len(period))) % period == 0)
+
+
+def renewed(past: Sequence[Array], velocity: Sequence[Array], rows: Integers) -> tuple[Array, ...]:
+    """Velocities (K+1,n+1,3) that the fluid had in the ``past``, new ones in some ``rows``."""
+    both = []
+    for before, new in zip(past, velocity, strict=True):
+        both.append(before.copy())
+        both[-1][rows] = new
+    return tuple(both)
+
+
 def require_calm(
-    wake: Wake, velocity: Sequence[Array], speed: float, time: float, names: Sequence[str]
+    wake: Wake,
+    velocity: Sequence[Array],
+    rows: Integers,
+    speed: float,
+    time: float,
+    names: Sequence[str],
 ) -> None:
     """Raise ConvergenceError where the induced velocity of a wake shows that it diverges.
 
-    ``velocity`` (K+1,n+1,3) m/s is induced at the vertices, ``speed`` m/s the highest of the wind
-    and of the surfaces in it.
+    ``velocity`` (len(rows),n+1,3) m/s is induced at the vertices of some ``rows``, ``speed`` m/s
+    the highest of the wind and of the surfaces in it.
     """
     for name, x, u in zip(names, wake.vertices, velocity, strict=True):
         size = np.einsum("kji,kji->kj", u, u)
         if np.all(size <= (DIVERGED * speed) ** 2):
             continue
-        row, column = np.unravel_index(
+        number, column = np.unravel_index(
             np.argmax(np.where(np.isnan(size), np.inf, size)), size.shape
         )
-        fast = np.sqrt(size[row, column])
+        row, fast = rows[number], np.sqrt(size[number, column])
         place = np.array2string(x[row, column], precision=4)
         raise ConvergenceError(
             f"wake of {name}, row {row} (age {wake.ages[row]:.4g} s), column {column}",

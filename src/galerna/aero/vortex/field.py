@@ -13,8 +13,10 @@ from galerna.aero.vortex.sheet import Sheet
 from galerna.aero.vortex.treecode import Treecode, choose_rule
 from galerna.contract import Array
 
-# Cost of clusters of a panel, and of a point among them, in pairs of panel and point summed.
-_PANEL, _POINT = 300.0, 2500.0
+#: Cost of clusters of a panel, and of a point among them, in pairs of panel and point summed.
+#: Single precision makes pairs cheaper than clusters.
+_CLUSTERS = {"single": (1000.0, 10000.0)}
+_IN_DOUBLE = (300.0, 2500.0)
 
 
 class InducedField:
@@ -56,7 +58,7 @@ class InducedField:
         if not numbers:
             return []
         everywhere = np.concatenate([x.reshape(-1, 3) for x in vertices])
-        if not self._worth_clusters(len(everywhere)):
+        if not self._worth_clusters(len(everywhere), precision or self.precision):
             velocity = self.velocity(everywhere, precision)
             ends = np.cumsum([x.size // 3 for x in vertices])[:-1]
             parts = np.split(velocity, ends)
@@ -73,12 +75,15 @@ class InducedField:
         assert self.error is not None
         return Treecode(self.sheets, self.error)
 
-    def _worth_clusters(self, points: int) -> bool:
+    def _worth_clusters(self, points: int, precision: str) -> bool:
+        if self.error is None:
+            return False
         panels = sum(np.size(sheet.circulation) for sheet in self.sheets)
-        return self.error is not None and panels * points > _PANEL * panels + _POINT * points
+        per_panel, per_point = _CLUSTERS.get(precision, _IN_DOUBLE)
+        return panels * points > per_panel * panels + per_point * points
 
     def _sum(self, points: Array, precision: str) -> Array:
-        if self._worth_clusters(points.size // 3):
+        if self._worth_clusters(points.size // 3, precision):
             return self._tree.velocity(points, precision)
         return direct_velocity(self.sheets, points, precision)
 

@@ -8,12 +8,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 
 from galerna.aero.vortex.cores import VortexCore
 from galerna.aero.vortex.field import InducedField
-from galerna.aero.vortex.loads import SurfaceLoads, lattice_loads
 from galerna.aero.vortex.mirror import MirrorPlane
 from galerna.aero.vortex.quasi_steady import strip_velocities
 from galerna.aero.vortex.separation import Separation
@@ -39,12 +39,14 @@ class Flow:
     """The flow about surfaces at one instant.
 
     ``circulation`` (m,n) m2/s of each surface; ``wind`` and ``wake_velocity`` (P,3) m/s at
-    ``control_points``: the N collocation points, then the middles of the loaded segments.
+    ``control_points``: the N collocation points, then the middles of the loaded segments. The
+    velocity is by the wake without the panels ``near`` the trailing edges, which hang on them.
     """
 
     circulation: list[Array]
     wind: Array
     wake_velocity: Array
+    near: Sequence[Sheet] = ()
 
 
 def control_points(surfaces: Sequence[Surface]) -> Array:
@@ -81,29 +83,42 @@ def bound_flow(
     return Flow(split_panels(circulation, surfaces), wind, wake_velocity)
 
 
+class EdgeInfluence(NamedTuple):
+    """Normal velocities by the first panels of wakes, as `EdgePanels.normal_velocity` has them."""
+
+    known: Array
+    shares: Array
+
+
+def edge_influence(
+    surfaces: Sequence[Surface], edges: Sequence[EdgePanels], mirror: MirrorPlane | None
+) -> EdgeInfluence:
+    """What the first panels of all wakes do at the collocation points: (N,) m/s and (N,n) 1/m."""
+    points, normals = collocation_points(surfaces), collocation_normals(surfaces)
+    pairs = [e.normal_velocity(points, normals, mirror) for e in edges]
+    known = np.sum([known for known, _ in pairs], axis=0)
+    return EdgeInfluence(known, np.hstack([share for _, share in pairs]))
+
+
 def edge_flow(
     system: BoundSystem,
     surfaces: Sequence[Surface],
     wind: Array,
     far_velocity: Array,
     edges: Sequence[EdgePanels],
-    mirror: MirrorPlane | None,
+    influence: EdgeInfluence,
     separation: Separation | None = None,
 ) -> Flow:
     """The flow with a wake whose first panels depend on the circulation sought."""
-    points, normals = control_points(surfaces), collocation_normals(surfaces)
-    needed = _needed_velocity(surfaces, wind + far_velocity)
-    pairs = [e.normal_velocity(points[: len(normals)], normals, mirror) for e in edges]
-    needed -= np.sum([known for known, _ in pairs], axis=0)
-    shares = np.hstack([share for _, share in pairs])
+    needed = _needed_velocity(surfaces, wind + far_velocity) - influence.known
+    shares = influence.shares
     solve = partial(system.solve_with_strips, strips=shares) if shares.any() else system.solve
     solved = solve(needed)
     if separation is not None:
         solved = separation.correct(surfaces, wind, solved, solve)
     circulation = split_panels(solved, surfaces)
     near = [e.sheet(g[-1]) for e, g in zip(edges, circulation, strict=True)]
-    near_velocity = InducedField(near, mirror=mirror).velocity(points)
-    return Flow(circulation, wind, far_velocity + near_velocity)
+    return Flow(circulation, wind, far_velocity, near)
 
 
 def strip_flow(
@@ -127,20 +142,13 @@ def strip_flow(
     return Flow(split_panels(circulation, surfaces), wind, wake_velocity)
 
 
-def flow_loads(
-    surfaces: Sequence[Surface],
-    flow: Flow,
-    density: float,
-    rate: Sequence[Array] | None,
-    mirror: MirrorPlane | None,
-) -> list[SurfaceLoads]:
-    """Loads of the surfaces, with the ``rate`` (m,n) m2/s2 of their circulations or without."""
+def segment_air(surfaces: Sequence[Surface], flow: Flow, mirror: MirrorPlane | None) -> Array:
+    """Velocity (S,3) m/s of the air, all vortices included, relative to the loaded segments."""
     bound = [Sheet(s.lattice.vertices, g) for s, g in zip(surfaces, flow.circulation, strict=True)]
     points = segment_points(surfaces)
     air = (flow.wind + flow.wake_velocity)[-len(points) :]
-    induced = InducedField(bound, mirror=mirror).velocity(points)
-    relative = air + induced - segment_velocities(surfaces)
-    return lattice_loads(surfaces, flow.circulation, relative, density, rate)
+    induced = InducedField([*bound, *flow.near], mirror=mirror).velocity(points)
+    return air + induced - segment_velocities(surfaces)
 
 
 def _needed_velocity(surfaces: Sequence[Surface], air: Array) -> Array:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
+from galerna.aero.vectors import cross_products
 from galerna.contract import Array
 from galerna.errors import InputError, did_you_mean
 
@@ -20,6 +22,7 @@ class Lattice:
     With ``rings`` "quarter_chord" a ring's upstream side lies on its panel's quarter chord and
     the collocation point on three quarters, which is exact for a flat plate in plane flow
     (James 1972); with "edges" rings and panels coincide and the point is the ring's centre.
+    What follows from the corners is computed when it is first wanted, and kept.
     """
 
     corners: Array
@@ -34,7 +37,7 @@ class Lattice:
         """Panels along the chord and along the span."""
         return self.corners.shape[0] - 1, self.corners.shape[1] - 1
 
-    @property
+    @cached_property
     def vertices(self) -> Array:
         """Corners (m+1,n+1,3) of the rings; the last row lies behind the trailing edge."""
         if self.rings == "edges":
@@ -42,20 +45,20 @@ class Lattice:
         panel = np.diff(self.corners, axis=0)
         return self.corners + 0.25 * np.concatenate([panel, panel[-1:]])
 
-    @property
+    @cached_property
     def collocation(self) -> Array:
         """Points (m,n,3) at which no flow passes through the surface."""
         place = 0.5 if self.rings == "edges" else 0.75
         along = (1.0 - place) * self.corners[:-1] + place * self.corners[1:]
         return 0.5 * (along[:, :-1] + along[:, 1:])
 
-    @property
+    @cached_property
     def area_vectors(self) -> Array:
         """Normals (m,n,3) times panel areas, m2, towards the suction side."""
         x = self.corners
-        return 0.5 * np.cross(x[1:, 1:] - x[:-1, :-1], x[:-1, 1:] - x[1:, :-1])
+        return 0.5 * cross_products(x[1:, 1:] - x[:-1, :-1], x[:-1, 1:] - x[1:, :-1])
 
-    @property
+    @cached_property
     def normals(self) -> Array:
         """Unit normals (m,n,3) of the surface at the collocation points, to the suction side.
 

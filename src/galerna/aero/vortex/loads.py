@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from galerna.aero.vectors import cross_products
 from galerna.aero.vortex.lattice import Lattice
 from galerna.aero.vortex.sheet import Sheet
 from galerna.aero.vortex.surface import Surface
@@ -40,7 +41,7 @@ class SurfaceLoads:
     def column_loads(self, origins: Array) -> tuple[Array, Array]:
         """Force (n+1,3) N and moment (n+1,3) N m of the columns about origins (n+1,3) m."""
         force = self.corner_force.sum(axis=0)
-        return force, np.cross(self.corners - origins, self.corner_force).sum(axis=0)
+        return force, cross_products(self.corners - origins, self.corner_force).sum(axis=0)
 
     def turned(self, turn: Array, corners: Array) -> SurfaceLoads:
         """The loads turned by a rotation (3,3), on the corners there."""
@@ -125,7 +126,7 @@ def _shares_of_ends(lattice: Lattice) -> tuple[Array, Array]:
 
 def _joukowski(strength: Array, velocity: Array, segment: Array, density: float) -> Array:
     """rho G v x l, eq. (5), in the shape of the segments."""
-    return density * strength[..., None] * np.cross(velocity.reshape(segment.shape), segment)
+    return density * strength[..., None] * cross_products(velocity.reshape(segment.shape), segment)
 
 
 def _shared_by_strips(columns: Array) -> Array:

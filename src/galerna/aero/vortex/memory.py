@@ -22,7 +22,8 @@ class Memory:
     corners and circulations now, and the ``past`` circulations ``past_step`` s before (0: none);
     the ``trailing`` circulations (h,n) for as long as they still have to be shed, newest first,
     and the ``times`` (h,) s before now when they were.
-    ``speed`` m/s is the highest of the air along the surfaces, to judge the wake by.
+    ``speed`` m/s is the highest of the air along the surfaces, to judge the wake by; ``sheds``
+    counts the rows shed.
     """
 
     wake: Wake
@@ -37,6 +38,7 @@ class Memory:
     earlier: Earlier | None = None
     past: list[Array] = field(default_factory=list)
     past_step: float = 0.0
+    sheds: int = 0
 
     def rates(self, circulation: Sequence[Array], dt: float) -> list[Array]:
         """Rates (m,n) m2/s2 to the circulations ``dt`` s from now, by backward differences.
@@ -78,6 +80,7 @@ def to_arrays(memory: Memory) -> dict[str, np.ndarray]:
         if axis is not None:
             arrays["axis"] = np.concatenate([axis.origin, axis.direction, [axis.speed]])
     arrays["surfaces"] = np.array(len(memory.corners))
+    arrays["sheds"] = np.array(memory.sheds)
     for kind, values in kinds.items():
         arrays |= {f"{kind}_{i}": a.copy() for i, a in enumerate(values)}
     return arrays
@@ -113,4 +116,5 @@ def from_arrays(arrays: Mapping[str, np.ndarray], ages: Array) -> Memory:
         past,
         kind("past"),
         past_step,
+        int(arrays["sheds"]),
     )

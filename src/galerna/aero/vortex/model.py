@@ -278,11 +278,10 @@ class VortexLattice:
         undisturbed = shown.wind - 0.5 * (moving[:, 1:] + moving[:, :-1])
         effective = undisturbed.copy()
         circulation = np.zeros(undisturbed.shape[:2])
-        induced = channels.bound_velocity(shown.surfaces, flow, self._flow.options.mirror)
-        along_span = channels.air_at_spans(shown.surfaces, flow)
+        along_span = channels.air_along_spans(shown.surfaces, shown.solution.air)
         for b, surface in enumerate(shown.surfaces):
             effective[b, first:] = channels.effective_air(
-                surface, flow.circulation[b], along_span[b], induced[b]
+                surface, flow.circulation[b], along_span[b]
             )
             circulation[b, first:] = flow.circulation[b][-1]
         force = self._polar_strip_force(shown)
@@ -375,6 +374,8 @@ def _unsteady_options(
         tree_error=options.tree_error or None,
         wake_precision=options.precision,
         start=options.start,
+        multirate=options.wake_multirate,
+        hold_influences=True,
         quasi_steady=options.quasi_steady,
         mirror=GROUND if options.ground else None,
         air_density=air_density,

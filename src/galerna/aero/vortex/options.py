@@ -137,6 +137,11 @@ class VortexLatticeOptions(_Block):
         description="How a free wake is moved: of second order with one evaluation a step, or "
         "with two, or of first order.",
     )
+    wake_multirate: bool = Field(
+        default=True,
+        description="Whether rows behind wide wake panels get a new velocity only when the fluid "
+        "has crossed these; with the scheme of Adams and Bashforth.",
+    )
     wake_turbulence: bool = Field(
         default=True, description="Whether turbulence moves the wake too, or its mean wind alone."
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -47,15 +48,20 @@ class Surface:
         """Panels along the chord and along the span."""
         return self.lattice.shape
 
+    @cached_property
+    def moving(self) -> Lattice:
+        """Velocities m/s of all points of the lattice, in their places."""
+        return Lattice(self.velocity, self.lattice.rings)
+
     @property
     def collocation_velocity(self) -> Array:
         """Velocity (m,n,3) m/s of the collocation points."""
-        return Lattice(self.velocity, self.lattice.rings).collocation
+        return self.moving.collocation
 
     @property
     def segment_velocity(self) -> Array:
         """Velocity (s,3) m/s of the middles of the loaded segments; see ``segment_middles``."""
-        return segment_middles(Lattice(self.velocity, self.lattice.rings).vertices)
+        return segment_middles(self.moving.vertices)
 
 
 def segment_middles(vertices: Array) -> Array:

@@ -49,6 +49,8 @@ class BoundSystem:
         self._factor: Factor | None = None
         self._matrix: Array | None = None
         self._surfaces: list[Surface] = []
+        self._guess: Array | None = None
+        self._kept_inverse: tuple[Factor | None, Array, Callable[[Array], Array]] | None = None
         self.iterations = 0  #: of GMRES in the last ``solve``; 0 when none were needed
         self.factorisations = 0  #: so far
 
@@ -60,6 +62,10 @@ class BoundSystem:
             self._factorise(self.influence())
         elif not self._moved_rigidly(self._factor.corners):
             self._matrix = self.influence()
+
+    def guess(self, circulation: Array) -> None:
+        """Begin the search for circulations of deformed surfaces with these (N,) m2/s."""
+        self._guess = circulation
 
     def influence(self) -> Array:
         """Normal velocity (N,N) 1/m at each collocation point by each ring of circulation 1."""
@@ -102,9 +108,10 @@ class BoundSystem:
         if self._matrix is None:
             return inverse(normal_velocity)
         columns = normal_velocity.reshape(len(normal_velocity), -1).T
+        guess = self._guess if normal_velocity.ndim == 1 else None
         solved = []
         for column in columns:
-            solution = self._solve_deformed(column, inverse, strips)
+            solution = self._solve_deformed(column, inverse, strips, guess)
             if solution is None:
                 self._factorise(self._matrix)
                 return self._factored_inverse(strips)(normal_velocity)
@@ -116,6 +123,9 @@ class BoundSystem:
         lu = self._lu
         if strips is None:
             return lambda right: lu_solve(lu, right, check_finite=False)
+        kept = self._kept_inverse
+        if kept is not None and kept[0] is self._factor and kept[1] is strips:
+            return kept[2]
         trailing = self.trailing_rings
         response = lu_solve(lu, strips, check_finite=False)
         schur = lu_factor(np.eye(len(trailing)) + response[trailing])
@@ -124,6 +134,7 @@ class BoundSystem:
             alone = lu_solve(lu, right, check_finite=False)
             return alone - response @ lu_solve(schur, alone[trailing])
 
+        self._kept_inverse = self._factor, strips, inverse
         return inverse
 
     @property
@@ -179,9 +190,13 @@ class BoundSystem:
         self.factorisations += 1
 
     def _solve_deformed(
-        self, right: Array, inverse: Callable[[Array], Array], strips: Array | None
+        self,
+        right: Array,
+        inverse: Callable[[Array], Array],
+        strips: Array | None,
+        guess: Array | None,
     ) -> Array | None:
-        """GMRES for one right side (N,), preconditioned; None where it takes too long."""
+        """GMRES for one right side (N,) from a guess, preconditioned; None if it takes long."""
         matrix, count = self._matrix, 0
         assert matrix is not None
         trailing = self.trailing_rings
@@ -193,8 +208,11 @@ class BoundSystem:
             nonlocal count
             count += 1
 
+        first = inverse(right)
+        if guess is not None:
+            first = guess + inverse(right - product(guess))
         solution, unfinished = gmres(
-            LinearOperator(matrix.shape, product, dtype=float), right, inverse(right),
+            LinearOperator(matrix.shape, product, dtype=float), right, first,
             rtol=GMRES_TOLERANCE, restart=GMRES_ITERATIONS, maxiter=1,
             M=LinearOperator(matrix.shape, inverse, dtype=float),
             callback=counted, callback_type="pr_norm",

@@ -16,17 +16,19 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from galerna.aero.vortex.field import InducedField
+from galerna.aero.vortex.far_wake import FarWake
 from galerna.aero.vortex.flow import (
+    EdgeInfluence,
     Flow,
     bound_flow,
     control_points,
     edge_flow,
-    flow_loads,
+    edge_influence,
+    segment_air,
     strip_flow,
     wind_at,
 )
-from galerna.aero.vortex.loads import SurfaceLoads
+from galerna.aero.vortex.loads import SurfaceLoads, lattice_loads
 from galerna.aero.vortex.memory import Memory, from_arrays, to_arrays
 from galerna.aero.vortex.quasi_steady import steady_wake
 from galerna.aero.vortex.rotor_axis import RotorAxis
@@ -44,10 +46,14 @@ from galerna.errors import InputError
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """Circulations, their rates (m,n) m2/s2, None at first, and loads of the surfaces."""
+    """Circulations, their rates (m,n) m2/s2, None at first, and loads of the surfaces.
+
+    ``air`` (S,3) m/s is the velocity of the air relative to the loaded segments.
+    """
 
     flow: Flow
     circulation_rate: list[Array] | None
+    air: Array
     loads: list[SurfaceLoads]
 
     @property
@@ -58,15 +64,26 @@ class Solution:
 
 @dataclass(eq=False)
 class _Trial:
-    """A step under way: whence, how long, the circulation shed, the wake and its field."""
+    """A step under way: whence, how long, the circulation shed, the wake and its field.
+
+    ``held`` is what the first solution found of influences and leaves to the others.
+    """
 
     memory: Memory
     dt: float
     shed: list[Shedding]
     wake: Wake
-    far: InducedField | None
-    frozen: Array | None = None
+    far: FarWake
+    held: _Influences | None = None
     solution: Solution | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class _Influences:
+    """Of the wake on surfaces: velocity (P,3) m/s by the far part, and what the first panels do."""
+
+    far: Array
+    edge: EdgeInfluence
 
 
 class UnsteadyLattice:
@@ -129,7 +146,14 @@ class UnsteadyLattice:
         shed = self._shedding(memory, surfaces, dt)
         total = [i + dt * new.known for i, new in zip(memory.shed, shed, strict=True)]
         wake = self.clock.advanced(memory, memory.elapsed + dt, total)
-        self._trial = _Trial(memory, dt, shed, wake, self._far_field(wake))
+        self.system.guess(np.concatenate([g.ravel() for g in memory.circulation]))
+        self._trial = _Trial(
+            memory,
+            dt,
+            shed,
+            wake,
+            FarWake(wake, self.options.core, self.clock.field, self.options.tree_error is not None),
+        )
 
     def solve(self, time: float, surfaces: Sequence[Surface]) -> Solution:
         """The flow about ``surfaces`` where they are at ``time``, the end of the step begun.
@@ -138,12 +162,14 @@ class UnsteadyLattice:
         """
         trial = self._begun()
         trial.wake.attach([s.lattice.vertices[-1] for s in surfaces])
-        self.system.place(surfaces)
+        if trial.held is None:
+            self.system.place(surfaces)
         flow = self._flow(trial, time, surfaces)
         rate = None if self.options.quasi_steady else trial.memory.rates(flow.circulation, trial.dt)
         options = self.options
-        loads = flow_loads(surfaces, flow, options.air_density, rate, options.mirror)
-        trial.solution = Solution(flow, rate, loads)
+        air = segment_air(surfaces, flow, options.mirror)
+        loads = lattice_loads(surfaces, flow.circulation, air, options.air_density, rate)
+        trial.solution = Solution(flow, rate, air, loads)
         return trial.solution
 
     def end_step(self, time: float, surfaces: Sequence[Surface]) -> None:
@@ -278,18 +304,17 @@ class UnsteadyLattice:
             edge_panels(new, sheet, self.largest_step)
             for new, sheet in zip(trial.shed, sheets, strict=True)
         ]
-        far = self._far_velocity(trial, points)
-        return edge_flow(self.system, surfaces, wind, far, edges, options.mirror, self.separation)
-
-    def _far_velocity(self, trial: _Trial, points: Array) -> Array:
-        """Velocity (P,3) m/s by the wake but for its first panels, which move with the edges."""
-        if trial.frozen is not None:
-            return trial.frozen
-        assert trial.far is not None
-        velocity = trial.far.velocity(points)
-        if self.options.freeze_wake:
-            trial.frozen = velocity
-        return velocity
+        influences = trial.held
+        if influences is None:
+            influences = _Influences(
+                trial.far.velocity(surfaces, points),
+                edge_influence(surfaces, edges, options.mirror),
+            )
+        if options.hold_influences:
+            trial.held = influences
+        return edge_flow(
+            self.system, surfaces, wind, influences.far, edges, influences.edge, self.separation
+        )
 
     def _shedding(self, memory: Memory, surfaces: Sequence[Surface], dt: float) -> list[Shedding]:
         assert memory.convection is not None
@@ -301,15 +326,6 @@ class UnsteadyLattice:
             shedding(s, u, h, self.largest_step, classical)
             for s, u, h in zip(surfaces, edge_velocities, histories, strict=True)
         ]
-
-    def _far_field(self, wake: Wake) -> InducedField | None:
-        """The field of all panels but the first, summed fast for all solutions of a step.
-
-        Panels far from a point are summed in single precision, at an error of 1e-7.
-        """
-        if self.options.quasi_steady:
-            return None
-        return self.clock.field(wake.sheets(self.options.core, rows=slice(1, None)), "mixed")
 
 
 def _speed(surfaces: Sequence[Surface], wind: Array) -> float:

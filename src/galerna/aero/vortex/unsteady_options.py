@@ -20,11 +20,14 @@ class UnsteadyOptions:
     ``free`` wakes move with the whole velocity, others with the wind. ``scheme`` is one of
     ``convection.SCHEMES``. ``core`` is that of the wake's vortices, None the singular vortex.
     ``tree_error`` is the relative error of the fast summation, None sums directly;
-    ``wake_precision`` is of the velocities that wakes induce on wakes. ``start`` "steady" begins
-    with the wake of the steady flow, "impulsive" without vortices in it. ``quasi_steady`` gives
-    the whole wake the present circulation. ``freeze_wake`` computes the velocity that the wake
-    induces on the surfaces, but for its first panels, once in a step, where the first ``solve`` of
-    the step has them. ``classical_shedding`` leaves the circulation at the beginning of a step in
+    ``wake_precision`` is of the velocities that wakes induce on wakes. With ``multirate`` rows
+    behind wide panels get a new velocity when fluid has crossed these, in the scheme of Adams
+    and Bashforth. ``start`` "steady" begins with the wake of the steady flow, "impulsive" without
+    vortices in it. ``quasi_steady`` gives
+    the whole wake the present circulation. ``hold_influences`` takes from the first ``solve`` of a
+    step, for all others, what vortices of circulation 1 do to the boundary condition, and the
+    velocity by the wake but for its first panels: iterations of a coupling move the surfaces
+    little. ``classical_shedding`` leaves the circulation at the beginning of a step in
     one ring, as most programs do.
     """
 
@@ -35,7 +38,8 @@ class UnsteadyOptions:
     wake_precision: str = "single"
     start: str = "steady"
     quasi_steady: bool = False
-    freeze_wake: bool = False
+    multirate: bool = False
+    hold_influences: bool = False
     classical_shedding: bool = False
     mirror: MirrorPlane | None = None
     air_density: float = AIR_DENSITY

@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from galerna.aero.vectors import cross_products
 from galerna.aero.vortex.blades import BladeLattice
 from galerna.aero.vortex.section_polars import SectionPolars
 from galerna.contract import Array
@@ -105,8 +106,8 @@ class PolarForces:
         aft = _middles(rotation[..., 1])
         aft = aft - np.sum(aft * along, axis=-1, keepdims=True) * along
         aft = aft / np.linalg.norm(aft, axis=-1, keepdims=True)
-        suction = np.cross(aft, along)
-        relative = wind - _middles(velocity + np.cross(angular_velocity, arm))
+        suction = cross_products(aft, along)
+        relative = wind - _middles(velocity + cross_products(angular_velocity, arm))
         across = np.sum(relative * suction, axis=-1)
         chordwise = np.sum(relative * aft, axis=-1)
         speed = np.hypot(across, chordwise)
@@ -149,7 +150,7 @@ class PolarForces:
             air.span / np.linalg.norm(air.span, axis=-1, keepdims=True)
         )
         lumped = _to_stations(force)
-        moment = np.cross(air.arm, lumped) + _to_stations(turn)
+        moment = cross_products(air.arm, lumped) + _to_stations(turn)
         return PolarLoads(lumped, moment, lift, drag, angle, outside)
 
     def describe_outside(self, blade: str, strip: int, lift: float) -> str:

@@ -60,12 +60,19 @@ def write_patches(path: Path, patches: Sequence[Patch]) -> None:
 
 
 class Series:
-    """A .pvd file that says at what time each file of a series holds."""
+    """A .pvd file that says at what time each file of a series holds.
 
-    def __init__(self, path: Path) -> None:
+    With ``since`` s it goes on after the files that stand there up to that time.
+    """
+
+    def __init__(self, path: Path, since: float | None = None) -> None:
         self.path = path
         self._file = _file("Collection")
         self._collection = ElementTree.SubElement(self._file, "Collection")
+        if since is not None and path.exists():
+            entries = ElementTree.parse(path).iter("DataSet")
+            last = since + 1e-8 * abs(since)  # the times are written with nine digits
+            self._collection.extend(e for e in entries if float(e.get("timestep", 0.0)) <= last)
 
     def __len__(self) -> int:
         return len(self._collection)

@@ -9,8 +9,12 @@ import numpy as np
 
 from galerna.aero.vortex.convection import (
     Convection,
+    Integers,
     corrected,
+    due_rows,
     earlier,
+    periods,
+    renewed,
     require_calm,
 )
 from galerna.aero.vortex.field import InducedField
@@ -84,28 +88,37 @@ class WakeClock:
         ]
         return [*wake.sheets(self.options.core, edge=edge), *bound]
 
-    def _fluid_velocity(self, memory: Memory, wake: Wake, time: float) -> tuple[Array, ...]:
-        """Velocity (K+1,n+1,3) m/s that moves the vertices of a wake."""
-        everywhere = np.concatenate([x.reshape(-1, 3) for x in wake.vertices])
-        wind = np.asarray(self.wind.velocity(everywhere, time), dtype=float)
-        ends = np.cumsum([x.size // 3 for x in wake.vertices])[:-1]
-        velocity = [
-            w.reshape(x.shape) for w, x in zip(np.split(wind, ends), wake.vertices, strict=True)
-        ]
+    def _fluid_velocity(
+        self, memory: Memory, wake: Wake, time: float, rows: Integers | None = None
+    ) -> tuple[Array, ...]:
+        """Velocity (K+1,n+1,3) m/s that moves the vertices of a wake, or of some ``rows`` alone."""
+        chosen = wake.vertices if rows is None else tuple(x[rows] for x in wake.vertices)
+        everywhere = np.concatenate([x.reshape(-1, 3) for x in chosen])
+        velocity = _like(np.asarray(self.wind.velocity(everywhere, time), dtype=float), chosen)
         if self.options.free:
             edge = 0.0 if self.options.core is None else self.options.core.initial_radius
             field = self.field(self.sheets(memory, wake, edge), self.options.wake_precision)
-            induced = field.vertex_velocities(range(len(wake.vertices)))
-            require_calm(wake, induced, memory.speed, time, self.names)
+            if rows is None:
+                rows = np.arange(len(wake.ages))
+                induced = field.vertex_velocities(range(len(wake.vertices)))
+            else:
+                induced = _like(field.velocity(everywhere), chosen)
+            require_calm(wake, induced, rows, memory.speed, time, self.names)
             velocity = [u + v for u, v in zip(velocity, induced, strict=True)]
         return tuple(velocity)
 
     def convection(self, memory: Memory, time: float, axis: RotorAxis | None) -> Convection:
         """How the wake just shed is going to move."""
-        velocity = self._fluid_velocity(memory, memory.wake, time)
-        if self.options.scheme != "adams_bashforth" or memory.earlier is None:
-            return Convection(velocity, None, axis)
-        return Convection(velocity, memory.earlier.acceleration(velocity), axis)
+        past = memory.earlier
+        if self.options.scheme != "adams_bashforth" or past is None:
+            return Convection(self._fluid_velocity(memory, memory.wake, time), None, axis)
+        if not self.options.multirate:
+            velocity = self._fluid_velocity(memory, memory.wake, time)
+            return Convection(velocity, past.acceleration(velocity), axis)
+        rows = due_rows(self.ages, memory.sheds)
+        new = self._fluid_velocity(memory, memory.wake, time, rows)
+        velocity = renewed(past.velocity, new, rows)
+        return Convection(velocity, past.acceleration(velocity, periods(self.ages) > 1), axis)
 
     def advanced(self, memory: Memory, elapsed: float, shed: Sequence[Array]) -> Wake:
         """The wake ``elapsed`` s after its shedding, with what the edges ``shed`` (n,) in all."""
@@ -138,4 +151,13 @@ class WakeClock:
         if self.options.scheme == "adams_bashforth":
             past = earlier(convection.velocity, fraction, elapsed)
         nothing = [np.zeros_like(i) for i in memory.shed]
-        return replace(memory, wake=wake, elapsed=0.0, shed=nothing, convection=None, earlier=past)
+        return replace(
+            memory, wake=wake, elapsed=0.0, shed=nothing, convection=None, earlier=past,
+            sheds=memory.sheds + 1,
+        )  # fmt: skip
+
+
+def _like(velocity: Array, shapes: Sequence[Array]) -> list[Array]:
+    """Velocities (k,3) of all points in the shapes of the surfaces' arrays."""
+    ends = np.cumsum([x.size // 3 for x in shapes])[:-1]
+    return [u.reshape(x.shape) for u, x in zip(np.split(velocity, ends), shapes, strict=True)]
