@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from galerna.errors import ConvergenceError, InputError
     from galerna.machine import build_machine
     from galerna.results import open_result, to_csv, to_outb
-    from galerna.running import run
+    from galerna.running import resume, run
     from galerna.turbine import Turbine
     from galerna.turbine import load as load_turbine
     from galerna.turbine import names as turbine_names
@@ -42,6 +42,7 @@ __all__ = [
     "open_result",
     "performance_surface",
     "power_curve",
+    "resume",
     "run",
     "steady_rotor",
     "to_csv",
@@ -63,6 +64,7 @@ _HOMES = {
     "open_result": ("galerna.results", "open_result"),
     "performance_surface": ("galerna.aero.bem.steady", "performance_surface"),
     "power_curve": ("galerna.aero.bem.steady", "power_curve"),
+    "resume": ("galerna.running", "resume"),
     "run": ("galerna.running", "run"),
     "steady_rotor": ("galerna.aero.bem.steady", "steady_rotor"),
     "to_csv": ("galerna.results", "to_csv"),

@@ -31,6 +31,12 @@ TurbineArgument = Annotated[
 ResultArgument = Annotated[
     Path, typer.Argument(metavar="RESULT", help="A result (.nc), finished or half-written.")
 ]
+EveryOption = Annotated[
+    float, typer.Option("--checkpoint-every", min=0.0, help="Wall-clock s between checkpoints.")
+]
+KeepOption = Annotated[
+    bool, typer.Option("--keep-checkpoint", help="Keep the last one of a complete run, to go on.")
+]
 
 
 def example(*lines: str) -> str:
@@ -50,11 +56,38 @@ def run(
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="Replace the result if there is one.")
     ] = False,
+    checkpoint_every: EveryOption = 60.0,
+    keep_checkpoint: KeepOption = False,
 ) -> None:
     """Simulate a case into a result file."""
     from galerna import commands
+    from galerna.saving import Saving
 
-    commands.run(case, output, duration, overwrite)
+    saving = Saving(checkpoint_every, keep_checkpoint)
+    commands.run(case, output, duration, overwrite, saving)
+
+
+@app.command(epilog=example("galerna resume my_case.nc"))
+def resume(
+    result: ResultArgument,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Another result file for all of it.")
+    ] = None,
+    duration: Annotated[
+        float | None, typer.Option(help="Simulated time in s, from 0, instead of the case's.")
+    ] = None,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace what stands at --output.")
+    ] = False,
+    checkpoint_every: EveryOption = 60.0,
+    keep_checkpoint: KeepOption = False,
+) -> None:
+    """Go on with a run that was stopped or killed, to the bits of one that was not."""
+    from galerna import commands
+    from galerna.saving import Saving
+
+    saving = Saving(checkpoint_every, keep_checkpoint)
+    commands.resume(result, output, duration, overwrite, saving)
 
 
 @app.command(epilog=example("galerna check my_case.yaml"))

@@ -21,9 +21,11 @@ if TYPE_CHECKING:
     import xarray
 
     from galerna.case import Case, LoadedCase
+    from galerna.checkpoints import Checkpoint
     from galerna.inflow.field import WindField
     from galerna.inflow.options import InflowOptions
     from galerna.machine import Machine
+    from galerna.saving import Saving
 
 #: of a case's inflow, what a file with a turbulence box leaves out
 NOT_IN_A_BOX = (
@@ -89,22 +91,50 @@ def _build(case: LoadedCase) -> Machine:
     return machine
 
 
-def run(case: str, output: Path | None, duration: float | None, overwrite: bool) -> None:
+def run(
+    case: str, output: Path | None, duration: float | None, overwrite: bool, saving: Saving
+) -> None:
     """Simulate a case with a progress bar and print the statistics of its result."""
-    from galerna import running
     from galerna.case import load
-    from galerna.progress import best
     from galerna.results.store import check_free
 
     loaded = load(case) if duration is None else load(case).lasting(duration)
     path = output or _default_output(case)
     check_free(path, overwrite)
     with interruptible():
-        machine = _build(loaded)
-        try:
-            result = running.simulate(machine, path, overwrite, [best(sys.stderr.isatty())])
-        finally:
-            _print_notices(machine)
+        _simulate(_build(loaded), path, overwrite, saving)
+
+
+def resume(
+    result: Path, output: Path | None, duration: float | None, overwrite: bool, saving: Saving
+) -> None:
+    """Go on from a checkpoint, as ``run`` goes from the start."""
+    from galerna import running
+    from galerna.progress import working
+
+    path = running.result_of(result)
+    with interruptible():
+        with working("building the machine again"):
+            machine, checkpoint = running.resumed_machine(path, duration)
+        print(f"goes on at {checkpoint.origin.time:g} s", file=sys.stderr)
+        _simulate(machine, output or path, overwrite, saving, checkpoint)
+
+
+def _simulate(
+    machine: Machine,
+    path: Path,
+    overwrite: bool,
+    saving: Saving,
+    resumed: Checkpoint | None = None,
+) -> None:
+    from galerna import running
+    from galerna.progress import best
+
+    shown = [best(sys.stderr.isatty())]
+    try:
+        result = running.simulate(machine, path, overwrite, shown, saving, resumed)
+    finally:
+        _print_notices(machine)
     tables.print_statistics(result, path)
 
 

@@ -26,17 +26,24 @@ class FlowWriter(Callback):
     """Writes the flow of a vortex lattice into a folder, every so many accepted steps.
 
     One series ``wake.pvd`` and one for each plane; ``options`` say which and when, rounded to
-    whole steps. Raises InputError where a series stands in the folder and is not to be replaced.
+    whole steps. A run that goes on ``since`` a time s continues the series that stand there.
+    Raises InputError where a series stands in the folder and is not to be replaced.
     """
 
     def __init__(
-        self, model: VortexLattice, options: FlowOutput, folder: Path, overwrite: bool = False
+        self,
+        model: VortexLattice,
+        options: FlowOutput,
+        folder: Path,
+        overwrite: bool = False,
+        since: float | None = None,
     ) -> None:
         self._model, self._options, self._folder = model, options, folder
         planes = {plane.name: Plane.of(plane) for plane in options.planes}
         names = [*(["wake"] if options.wake else []), *planes]
-        _clear(folder, names, overwrite)
-        self._series = {name: Series(folder / f"{name}.pvd") for name in names}
+        if since is None:
+            _clear(folder, names, overwrite)
+        self._series = {name: Series(folder / f"{name}.pvd", since) for name in names}
         self._planes = planes
 
     def start(self, simulation: Simulation, end: float) -> None:

@@ -69,15 +69,21 @@ class Machine:
         yield "records", f"{len(self.channels)} of {len(simulation.channels)} channels"
         yield "time", f"{case.duration_s:g} s in {steps} steps of {case.time_step_s:g} s"
 
-    def flow_writers(self, result: Path, overwrite: bool) -> list[Callback]:
-        """What writes the flow beside a result, where the case asks for it."""
+    def flow_writers(
+        self, result: Path, overwrite: bool, since: float | None = None
+    ) -> list[Callback]:
+        """What writes the flow beside a result, where the case asks for it.
+
+        A run that goes on ``since`` a time s continues what stands there.
+        """
         model = self.vortex_lattice
         if model is None or model.options.flow_output is None:
             return []
         from galerna.flow_output import FlowWriter, flow_folder
 
         with self.case.blame("aerodynamics", "flow_output"):
-            return [FlowWriter(model, model.options.flow_output, flow_folder(result), overwrite)]
+            folder = flow_folder(result)
+            return [FlowWriter(model, model.options.flow_output, folder, overwrite, since)]
 
     @property
     def vortex_lattice(self) -> VortexLattice | None:

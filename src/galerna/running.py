@@ -2,25 +2,32 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any
+from uuid import uuid4
 
-from galerna import __version__
+from galerna import __version__, checkpoints
 from galerna.aero.vortex.options import VortexLatticeOptions
 from galerna.case import Case, LoadedCase, load
+from galerna.checkpoints import Checkpoint
 from galerna.cite import references
 from galerna.errors import GalernaError, InputError
 from galerna.machine import Machine, build_machine
+from galerna.results.earlier import EarlierRecords
 from galerna.results.log import Layout
 from galerna.results.store import ResultFile, check_free
+from galerna.saving import Checkpointer, Saving
 from galerna.simulation import Callback, Simulation
 
 if TYPE_CHECKING:
     import xarray
+
+log = logging.getLogger("galerna")
 
 
 def run(
@@ -30,13 +37,14 @@ def run(
     duration: float | None = None,
     overwrite: bool = False,
     callbacks: Sequence[Callback] = (),
+    saving: Saving | None = None,
 ) -> xarray.Dataset:
     """Simulate a case (file, built-in name, dictionary or ``Case``) and return its result.
 
     With ``output`` the result is a NetCDF file too, whose records are on disk from the
     first on; a run that fails or is interrupted leaves what it had, and its ``status``
-    says so. ``duration`` s replaces that of the case. Raises InputError, and
-    ConvergenceError where a step fails.
+    says so, with a checkpoint from which ``resume`` goes on. ``duration`` s replaces that of
+    the case. Raises InputError, and ConvergenceError where a step fails.
     """
     loaded = case if isinstance(case, LoadedCase) else load(case)
     if duration is not None:
@@ -44,31 +52,132 @@ def run(
     if output is None:
         _require_no_flow(loaded.case)
         with TemporaryDirectory(prefix="galerna-") as folder:
-            return simulate(build_machine(loaded), Path(folder) / "result.nc", callbacks=callbacks)
+            path = Path(folder) / "result.nc"
+            return simulate(build_machine(loaded), path, callbacks=callbacks, saving=saving)
     check_free(Path(output), overwrite)
-    return simulate(build_machine(loaded), Path(output), overwrite, callbacks)
+    return simulate(build_machine(loaded), Path(output), overwrite, callbacks, saving)
+
+
+def resume(
+    result: str | Path,
+    output: str | Path | None = None,
+    *,
+    duration: float | None = None,
+    overwrite: bool = False,
+    callbacks: Sequence[Callback] = (),
+    saving: Saving | None = None,
+) -> xarray.Dataset:
+    """Go on from the checkpoint beside a result, to the bits of a run that was never stopped.
+
+    The result itself grows, or ``output`` gets all of it. ``duration`` s replaces that of the
+    case: a run that kept its checkpoint can go on after its end. Raises InputError where there
+    is no checkpoint or it does not fit, and as ``run`` does.
+    """
+    path = result_of(Path(result))
+    machine, checkpoint = resumed_machine(path, duration)
+    target = path if output is None else Path(output)
+    return simulate(machine, target, overwrite, callbacks, saving, checkpoint)
+
+
+def result_of(path: Path) -> Path:
+    """The result that a log or a checkpoint stands beside; a result itself."""
+    return path.with_suffix("") if path.suffix in (".log", ".checkpoint") else path
+
+
+def resumed_machine(result: Path, duration: float | None = None) -> tuple[Machine, Checkpoint]:
+    """The machine of a result in the state of its checkpoint, and that.
+
+    ``duration`` s replaces that of the case. Raises InputError where there is no checkpoint, or
+    the turbine, the wind or the version are no longer what they were.
+    """
+    checkpoint = checkpoints.read(result)
+    EarlierRecords(result, checkpoint.origin.records).require_run(checkpoint.origin.run)
+    for difference in checkpoint.differences():
+        log.warning("the last bits may differ from those of an unbroken run: %s", difference)
+    machine = build_machine(checkpoint.case(duration))
+    try:
+        checkpoint.give(machine)
+    except InputError:
+        machine.close()
+        raise
+    return machine, checkpoint
 
 
 def simulate(
-    machine: Machine, output: Path, overwrite: bool = False, callbacks: Sequence[Callback] = ()
+    machine: Machine,
+    output: Path,
+    overwrite: bool = False,
+    callbacks: Sequence[Callback] = (),
+    saving: Saving | None = None,
+    resumed: Checkpoint | None = None,
 ) -> xarray.Dataset:
-    """Run a machine that is built, into a result file."""
-    settings = machine.case.case
-    layout = Layout(machine.channels, machine.simulation.coordinates, _attributes(machine))
-    writers = machine.flow_writers(output, overwrite)
-    result = ResultFile(output, layout, overwrite)
-    recorder = Recorder(result, settings.record_every, settings.outputs.start_s)
+    """Run a machine that is built into a result file, and close it.
+
+    ``saving`` says when checkpoints are written. A machine that was ``resumed`` continues the
+    records of its result, or begins a new one with them.
+    """
     try:
-        machine.simulation.run(settings.duration_s, [recorder, *writers, *callbacks])
-    except (GalernaError, KeyboardInterrupt) as error:
-        reason = str(error).splitlines()[0] if str(error) else "interrupted"
-        with suppress(InputError):  # a full disk: the log holds the records
-            result.finish(f"stopped at {machine.simulation.time:.6g} s: {reason}")
-        error.add_note(f"the records so far are in {output}")
-        raise
+        return _Run(machine, output, overwrite, saving or Saving(), resumed).go(callbacks)
     finally:
         machine.close()
-    return result.finish(machine.simulation.stopped or "complete")
+
+
+class _Run:
+    """One run of a machine with all that it writes."""
+
+    def __init__(
+        self,
+        machine: Machine,
+        output: Path,
+        overwrite: bool,
+        saving: Saving,
+        resumed: Checkpoint | None,
+    ) -> None:
+        settings = machine.case.case
+        origin = resumed.origin if resumed else None
+        run = origin.run if origin else uuid4().hex
+        times = (*origin.resumed, origin.time) if origin else ()
+        self.machine, self.saving = machine, saving
+        attributes = _attributes(machine, run, times)
+        layout = Layout(machine.channels, machine.simulation.coordinates, attributes)
+        earlier = None
+        if resumed is not None:
+            earlier = EarlierRecords(resumed.result, resumed.origin.records)
+        in_place = resumed is not None and resumed.result == output
+        since = machine.simulation.time if in_place else None
+        self.writers = machine.flow_writers(output, overwrite, since)
+        self.result = ResultFile(output, layout, overwrite, earlier)
+        self.recorder = Recorder(self.result, settings.record_every, settings.outputs.start_s)
+        self.checkpoints = Checkpointer(machine, self.recorder, run, saving, times)
+        if not in_place:
+            self.checkpoints.remove()  # it belongs to the result that was here
+
+    def go(self, callbacks: Sequence[Callback]) -> xarray.Dataset:
+        """March to the end and give the result."""
+        simulation = self.machine.simulation
+        try:
+            beside = [self.recorder, *self.writers, *callbacks, self.checkpoints]
+            simulation.run(self.machine.case.case.duration_s, beside)
+        except (GalernaError, KeyboardInterrupt) as error:
+            self._stopped(error)
+            raise
+        if simulation.stopped or self.saving.keep:
+            self.checkpoints.save()
+        dataset = self.result.finish(simulation.stopped or "complete")
+        if not (simulation.stopped or self.saving.keep):
+            self.checkpoints.remove()
+        return dataset
+
+    def _stopped(self, error: BaseException) -> None:
+        """Leave a readable result, a checkpoint, and a note on where they are."""
+        reason = str(error).splitlines()[0] if str(error) else "interrupted"
+        self.checkpoints.save()
+        with suppress(InputError):  # a full disk: the log holds the records
+            self.result.finish(f"stopped at {self.machine.simulation.time:.6g} s: {reason}")
+        path = self.result.path
+        error.add_note(f"the records so far are in {path}")
+        if self.checkpoints.path.exists():
+            error.add_note(f"galerna resume {path} goes on from its last checkpoint")
 
 
 def _require_no_flow(case: Case) -> None:
@@ -84,17 +193,36 @@ class Recorder(Callback):
 
     def __init__(self, result: ResultFile, every: int, start: float) -> None:
         self._result, self._every, self._start = result, every, start
+        self.path = result.path
+        self.steps = 0  #: of the simulation that are in the result, or leave no record
+
+    @property
+    def records(self) -> int:
+        """How many are written."""
+        return self._result.records
+
+    def start(self, simulation: Simulation, end: float) -> None:
+        """All steps before this run are written."""
+        self.steps = simulation.steps
 
     def accepted(self, simulation: Simulation) -> None:
+        """Write the record that is due."""
         if simulation.steps % self._every == 0 and simulation.time >= self._start:
             self._result.append(simulation.time, simulation.record())
+        self.steps = simulation.steps
+
+    def sync(self) -> None:
+        """Bring the records to the disk itself."""
+        self._result.sync()
 
 
-def _attributes(machine: Machine) -> dict[str, str | float]:
+def _attributes(machine: Machine, run: str, resumed: Sequence[float]) -> dict[str, str | float]:
     """Where a result comes from: enough to make it again."""
     case, settings = machine.case, machine.case.case
+    at = {"resumed_at_s": ", ".join(f"{time:.9g}" for time in resumed)} if resumed else {}
     return {
         "galerna_version": __version__,
+        "run": run,
         "case_name": case.name,
         "case": case.document.text,
         "case_folder": str(case.folder),
@@ -105,4 +233,5 @@ def _attributes(machine: Machine) -> dict[str, str | float]:
         "seed": settings.seed,
         "references": "\n".join(reference.text for reference in references(settings)),
         "created": datetime.now(UTC).isoformat(timespec="seconds"),
+        **at,
     }

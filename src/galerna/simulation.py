@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Protocol
 
 import numpy as np
@@ -12,6 +12,8 @@ from galerna.contract import Array, Channel, LoadModel, Loads, Motion
 from galerna.errors import ConvergenceError, InputError
 
 Record = dict[str, float | Array]
+
+LARGEST_UNDO = 1_000_000  #: bytes that are copied before every step at most
 
 
 class Stateful(Protocol):
@@ -109,6 +111,9 @@ class Simulation:
         self.stopped = ""  #: why the run is to end early
         self.probes = dict(probes or {})
         self.commander = commander
+        self._undo: dict[str, np.ndarray] | None = {}  # what the step under way has commanded
+        self._light = True  # whether that is little enough to be kept for every step
+        self._committing = False  # whether a part has accepted a step that another has not
         commanding = {} if commander is None else {"control": commander}
         self._parts: dict[str, Part] = {"structure": structure, **self.load_models, **commanding}
         self._stateful: dict[str, Stateful] = {
@@ -153,10 +158,12 @@ class Simulation:
 
     def advance(self) -> None:
         """One step of ``time_step``, in smaller ones where it does not converge."""
+        self._undo = self._commanded()
         if self.commander is not None:
             self.commander.command(self.time, self.time_step)
         self._step(self.time, self.time_step, self.halvings)
         self.steps += 1
+        self._undo, self._committing = {}, False
 
     def record(self) -> Record:
         """Every channel of the accepted state."""
@@ -169,21 +176,41 @@ class Simulation:
 
     def state(self) -> dict[str, np.ndarray]:
         """Everything that the next step depends on, by ``part/name``."""
-        parts = {
-            f"{name}/{key}": value
-            for name, part in self._stateful.items()
-            for key, value in part.state().items()
-        }
-        return {"steps": np.array(self.steps), **parts}
+        return {"steps": np.array(self.steps), **self._state(self._stateful)}
+
+    def accepted_state(self) -> dict[str, np.ndarray] | None:
+        """``state`` at ``time``, also where a step was begun and has failed.
+
+        None where the step got so far that it cannot be taken back.
+        """
+        if self._committing or self._undo is None:
+            return None
+        return {**self.state(), **self._undo}
 
     def restore(self, state: Mapping[str, np.ndarray]) -> None:
         """Take back what ``state`` gave; the run continues with the same bits."""
+        self._restore(state)
+        self._undo, self._committing = {}, False
+
+    def _restore(self, state: Mapping[str, np.ndarray]) -> None:
         self.steps = int(state["steps"])
         for name, part in self._stateful.items():
             prefix = f"{name}/"
             part.restore(
                 {key.removeprefix(prefix): v for key, v in state.items() if key.startswith(prefix)}
             )
+
+    def _state(self, names: Iterable[str]) -> dict[str, np.ndarray]:
+        parts = ((name, self._stateful[name].state()) for name in names)
+        return {f"{name}/{key}": value for name, state in parts for key, value in state.items()}
+
+    def _commanded(self) -> dict[str, np.ndarray] | None:
+        """The state of all that a command changes; None once that is too large for every step."""
+        if not self._light:
+            return None
+        state = self._state(name for name in ("structure", "control") if name in self._stateful)
+        self._light = sum(value.nbytes for value in state.values()) < LARGEST_UNDO
+        return state
 
     def _step(self, time: float, dt: float, halvings: int) -> None:
         try:
@@ -194,18 +221,20 @@ class Simulation:
             self.structure.reject(time)
             self._halve(time, 0.5 * dt, halvings - 1)
             return
+        self._committing = True
         for _, model, motion in self._models:
             model.end_step(time + dt, motion)
         self.structure.accept()
 
     def _halve(self, time: float, dt: float, halvings: int) -> None:
         """Two steps of ``dt``, or none: where the second fails, the first is taken back."""
-        accepted = self.state()
+        accepted, committing = self.state(), self._committing
         try:
             self._step(time, dt, halvings)
             self._step(time + dt, dt, halvings)
         except ConvergenceError:
-            self.restore(accepted)
+            self._restore(accepted)
+            self._committing = committing
             raise
 
     def _balance(self, time: float, dt: float) -> None:

@@ -8,11 +8,13 @@ write, so a run that is killed leaves all of them but the one in the making.
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from io import FileIO
 from itertools import pairwise
 from pathlib import Path
+from typing import BinaryIO
 
 import numpy as np
 
@@ -69,14 +71,22 @@ class Layout:
 
 
 class Log:
-    """The log of a run, open for writing."""
+    """The log of a run, open for writing.
 
-    def __init__(self, path: Path, layout: Layout) -> None:
+    With ``keep``, it goes on after so many records of the log that stands there; those that
+    follow are cut off. Raises InputError where that holds less, or another run is writing it.
+    """
+
+    def __init__(self, path: Path, layout: Layout, keep: int | None = None) -> None:
         self.path = path
+        self.records = keep or 0  #: in it
         self._slices = tuple(layout.slices().items())
         self._row = np.zeros(layout.width, dtype="<f8")
         self._file = path.open("ab", buffering=0)
         _claim(self._file, path)
+        if keep is not None:
+            self._file.truncate(_end_of(path, keep))
+            return
         self._file.truncate(0)
         self._write(MAGIC + layout.to_json().encode() + b"\n")
 
@@ -96,6 +106,16 @@ class Log:
             )
             raise ConvergenceError("results", f"channel {bad!r} is not a number", time=time)
         self._write(row.tobytes())
+        self.records += 1
+
+    def extend(self, rows: Array) -> None:
+        """Add the rows (n, width) of another log."""
+        self._write(np.ascontiguousarray(rows, dtype="<f8").tobytes())
+        self.records += len(rows)
+
+    def sync(self) -> None:
+        """Bring what was written to the disk itself."""
+        os.fsync(self._file.fileno())
 
     def close(self) -> None:
         self._file.close()
@@ -133,15 +153,30 @@ def read_log(path: Path) -> tuple[Layout, Array]:
     Raises InputError if the file is not a log.
     """
     with path.open("rb") as file:
-        if file.readline(len(MAGIC)) != MAGIC:
-            raise InputError(str(path), "is not a log of galerna")
-        header = file.readline(LONGEST_HEADER)
-        try:
-            layout = Layout.from_json(header)
-            width = layout.width
-        except (ValueError, KeyError, TypeError) as error:
-            found = f"the description of the records is damaged ({error})"
-            raise InputError(str(path), found) from error
+        layout = _read_layout(file, path)
         values = np.fromfile(file, dtype="<f8")
-    complete = len(values) // width
-    return layout, values[: complete * width].reshape(complete, width)
+    complete = len(values) // layout.width
+    return layout, values[: complete * layout.width].reshape(complete, layout.width)
+
+
+def _end_of(path: Path, records: int) -> int:
+    """Where so many records of a log end, in bytes; InputError if it holds less."""
+    with path.open("rb") as file:
+        layout = _read_layout(file, path)
+        end = file.tell() + 8 * layout.width * records
+    if path.stat().st_size < end:
+        raise InputError(str(path), f"holds less than the {records} records that it had")
+    return end
+
+
+def _read_layout(file: BinaryIO, path: Path) -> Layout:
+    """Read up to the first record."""
+    if file.readline(len(MAGIC)) != MAGIC:
+        raise InputError(str(path), "is not a log of galerna")
+    try:
+        layout = Layout.from_json(file.readline(LONGEST_HEADER))
+        layout.slices()  # a channel without its coordinate shows here
+    except (ValueError, KeyError, TypeError) as error:
+        found = f"the description of the records is damaged ({error})"
+        raise InputError(str(path), found) from error
+    return layout

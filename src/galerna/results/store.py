@@ -16,6 +16,8 @@ from galerna.results.log import Layout, Log, read_log
 if TYPE_CHECKING:
     import xarray
 
+    from galerna.results.earlier import EarlierRecords
+
 COORDINATE_UNITS = {"time": "s", "radius": "m"}
 
 
@@ -27,27 +29,46 @@ def log_of(path: Path) -> Path:
 class ResultFile:
     """The result of one run on disk: append records, then ``finish``.
 
-    Raises InputError if a result stands there already and ``overwrite`` is not set;
-    with it, the old result stays until the new one is complete. Raises InputError too
-    if another run is writing there.
+    A run that goes on has ``earlier`` records, which the result begins with. Raises InputError
+    if a result stands there already, not the one that goes on, and ``overwrite`` is not set;
+    with it, the old result stays until the new one is complete. Raises InputError too if
+    another run is writing there.
     """
 
-    def __init__(self, path: Path, layout: Layout, overwrite: bool = False) -> None:
-        self.path = path
-        check_free(path, overwrite)
+    def __init__(
+        self,
+        path: Path,
+        layout: Layout,
+        overwrite: bool = False,
+        earlier: EarlierRecords | None = None,
+    ) -> None:
+        self.path, self._layout = path, layout
+        if earlier is None or earlier.path != path:
+            check_free(path, overwrite)
         path.parent.mkdir(parents=True, exist_ok=True)
-        self._log = Log(log_of(path), layout)
+        log = log_of(path)
+        self._log = Log(log, layout) if earlier is None else earlier.log_at(log, layout)
+
+    @property
+    def records(self) -> int:
+        """How many it holds."""
+        return self._log.records
 
     def append(self, time: float, record: Mapping[str, float | Array]) -> None:
         """Add the record at ``time`` s."""
         self._log.append(time, record)
+
+    def sync(self) -> None:
+        """Bring the records to the disk itself."""
+        self._log.sync()
 
     def finish(self, status: str = "complete") -> xarray.Dataset:
         """Turn the log into a NetCDF file and return what it holds.
 
         Raises InputError if the file cannot be written; the log stays then.
         """
-        dataset = _dataset(*read_log(self._log.path), status)
+        _, rows = read_log(self._log.path)
+        dataset = _dataset(self._layout, rows, status)
         write_netcdf(dataset, self.path)
         self._log.close()  # not before: it keeps other runs out
         self._log.path.unlink()
