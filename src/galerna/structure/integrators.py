@@ -210,7 +210,10 @@ class Trial:
         else:
             pairs, last = self._system.pairs, self._last
             carried = None if last is None else carried_on(pairs, *last)
-            balance = self._system.balance(self.state, forces, *self._tangents[1:], carried=carried)
+            _, velocity_tangent, acceleration_tangent = self._tangents
+            balance = self._system.balance(
+                self.state, forces, velocity_tangent, acceleration_tangent, carried=carried
+            )
         self._residual = balance.residual
         if not np.isfinite(balance.residual).all():
             raise self.failure()

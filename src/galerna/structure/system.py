@@ -288,6 +288,14 @@ class System:
             self.still(), empty_answer(len(self.pairs.ends)),
         )  # fmt: skip
 
+    def node_wrenches(self, state: State) -> Array:
+        """Wrenches (m,12) of the pairs in the residual of their nodes, in the nodes' axes."""
+        self.set_time(state.time)
+        return respond(
+            self.pairs, state.multiplier, state.position, state.rotation, state.velocity,
+            empty_answer(len(self.pairs.ends)),
+        ).node_wrench  # fmt: skip
+
     def internal_loads(self, state: State, beam: str, forces: Forces | None = None) -> Array:
         """Force N and moment N m (n+1,6) that the outer part of a beam puts on the inner one.
 
@@ -300,13 +308,13 @@ class System:
             beams = {name.partition(":")[0] for name in self.pair_names if ":" in name}
             raise InputError(beam, "no such beam", did_you_mean(beam, beams))
         wrench = self.pair_answer(state).node_wrench[elements]
-        wrench[0, :6] += self._root_balance(state, self.roots[beam], forces)
+        wrench[0, :6] += self.root_balance(state, self.roots[beam], forces)
         root = elements[0]
         place = self.pairs.offset_rotation[root, 0], self.pairs.offset_position[root, 0]
         wrench[0, :6] = adjoint(*place).T @ wrench[0, :6]
         return np.vstack([-wrench[:, :6], wrench[-1:, 6:]])
 
-    def _root_balance(self, state: State, root: Root, forces: Forces | None) -> Array:
+    def root_balance(self, state: State, root: Root, forces: Forces | None = None) -> Array:
         """Inertia minus weight and loads (6,) of a beam's root, in the axes of its frame."""
         forces = forces or Forces.none(len(self))
         forces.check(len(self))
