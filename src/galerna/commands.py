@@ -155,10 +155,14 @@ def _default_output(case: str) -> Path:
 
 def check(case: str) -> None:
     """Build everything that a run needs, and say what it is."""
+    from contextlib import closing
+
     from galerna.case import load
+    from galerna.compiling import announced
 
     loaded = load(case)
-    tables.print_pairs(_build(loaded).describe())
+    with announced(), closing(_build(loaded)) as machine:
+        tables.print_pairs(machine.describe())
     print(f"{loaded.document.name}: ready to run")
 
 
@@ -174,13 +178,11 @@ def demo(folder: Path, duration: float | None) -> None:
     """Run the demonstration case into a folder of its own, and draw it."""
     from galerna import running
     from galerna.case import load
-    from galerna.machine import build_machine
     from galerna.progress import best
     from galerna.report import plot_result
 
     loaded = load("demo") if duration is None else load("demo").lasting(duration)
-    print("NREL 5 MW in turbulent wind: building the wind and compiling the kernels ...")
-    machine = build_machine(loaded)
+    machine = _build(loaded)
     tables.print_pairs(machine.describe())
     path = folder / "demo.nc"
     with interruptible():
@@ -228,6 +230,7 @@ def list_turbines() -> None:
 def show_turbine(name: str) -> None:
     """A turbine's figures beside the published ones, with difference and source."""
     from galerna import turbine as turbines
+    from galerna.compiling import announced
     from galerna.figures import frequencies, rated_point
     from galerna.turbine.summary import fitted_airfoils, summary
 
@@ -235,7 +238,8 @@ def show_turbine(name: str) -> None:
     solved: dict[str, float] = {}
     for solve in (rated_point, frequencies):
         try:
-            solved |= solve(turbine)
+            with announced():
+                solved |= solve(turbine)
         except GalernaError as error:
             print(f"not computed: {error}", file=sys.stderr)
     tables.print_figures(turbine.name, summary(turbine, solved))
@@ -251,13 +255,15 @@ def power_curve(name: str, plot: Path | None, csv: Path | None, step: float) -> 
 
     from galerna import turbine as turbines
     from galerna.aero.bem import steady
+    from galerna.compiling import announced
     from galerna.report import power_curve_figure
     from galerna.report.style import save
 
     turbine = turbines.load(name)
     control = turbine.control
     last = control.cut_out_wind_speed + 1e-9
-    curve = steady.power_curve(turbine, np.arange(control.cut_in_wind_speed, last, step))
+    with announced():
+        curve = steady.power_curve(turbine, np.arange(control.cut_in_wind_speed, last, step))
     tables.print_curve(turbine.name, curve)
     if plot is not None:
         print(f"picture: {save(power_curve_figure(curve, turbine.name), plot)}")
@@ -330,7 +336,10 @@ def validate(names: list[str], list_only: bool, json_file: Path | None, page: Pa
         rows = ((c.group, c.name, f"{c.seconds:g} s", c.title) for c in chosen)
         tables.print_rows("", ("group", "case", "cost", "what it holds"), rows, numbers_from=4)
         return 0
-    return validating.judge(chosen, json_file, page)
+    from galerna.compiling import announced
+
+    with announced():
+        return validating.judge(chosen, json_file, page)
 
 
 def plot(result: Path, channels: list[str], output: Path | None) -> None:

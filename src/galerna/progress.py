@@ -16,7 +16,7 @@ from galerna.units import DEG, RPM
 class Pace(Callback):
     """Knows how fast a run goes, and looks at it every ``interval`` s of the wall clock.
 
-    The clock starts after the first step, which also compiles the kernels.
+    The clock starts after the first step, which also loads or compiles the kernels.
     """
 
     interval: float
@@ -65,7 +65,7 @@ class ProgressBar(Pace):
             console=Console(stderr=True),
             transient=True,
         )
-        self._task = self._progress.add_task("compiling", total=end)
+        self._task = self._progress.add_task("first step", total=end)
         self._progress.start()
 
     def show(self, simulation: Simulation, factor: float, remaining: float) -> None:

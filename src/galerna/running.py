@@ -16,6 +16,7 @@ from galerna.aero.vortex.options import VortexLatticeOptions
 from galerna.case import Case, LoadedCase, load
 from galerna.checkpoints import Checkpoint
 from galerna.cite import references
+from galerna.compiling import Report
 from galerna.errors import GalernaError, InputError
 from galerna.machine import Machine, build_machine
 from galerna.results.earlier import EarlierRecords
@@ -156,7 +157,7 @@ class _Run:
         """March to the end and give the result."""
         simulation = self.machine.simulation
         try:
-            beside = [self.recorder, *self.writers, *callbacks, self.checkpoints]
+            beside = [Report(), self.recorder, *self.writers, *callbacks, self.checkpoints]
             simulation.run(self.machine.case.case.duration_s, beside)
         except (GalernaError, KeyboardInterrupt) as error:
             self._stopped(error)
