@@ -66,7 +66,7 @@ def test_a_horizontal_blade_weighs_on_its_root_as_its_mass_says() -> None:
     assert shown["blade_root_in_plane_moment"][0] > 0.0, "down-going: with the rotation"
     assert shown["blade_root_in_plane_shear"][0] == pytest.approx(-mass * GRAVITY, rel=0.01)
     upright = at_rest(options())[1]
-    cosine = np.cos(NREL.hub.cone + NREL.nacelle.tilt)
+    cosine = np.cos(NREL.hub.cone - NREL.nacelle.tilt)
     assert upright["blade_root_axial_force"][0] == pytest.approx(-mass * GRAVITY * cosine, rel=1e-3)
 
 
@@ -183,7 +183,7 @@ def test_displacements_are_seen_along_their_axes() -> None:
     state.position[tip] += [0.5, 0.0, 0.0]  # downwind
     state.rotation[tip] = state.rotation[tip] @ exp_so3(np.array([0.0, 0.0, -0.1]))  # to feather
     shown = machine.sensors.record(state, (), 0.0)
-    cosine = np.cos(NREL.hub.cone + NREL.nacelle.tilt)
+    cosine = np.cos(NREL.hub.cone - NREL.nacelle.tilt)
     assert shown["tip_out_of_plane_displacement"][0] == pytest.approx(0.5 * cosine, rel=1e-2)
     assert shown["tip_edgewise_displacement"][0] == pytest.approx(0.5 * cosine, rel=1e-2)
     assert shown["tip_twist"][0] == pytest.approx(0.1)

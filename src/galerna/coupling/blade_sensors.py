@@ -15,6 +15,7 @@ from galerna.coupling.snapshot import (
     true_acceleration,
     turned,
 )
+from galerna.structure.forces import hats
 from galerna.structure.frames import rotation_about
 from galerna.structure.system import State
 from galerna.structure.turbine import TurbineSystem
@@ -38,7 +39,7 @@ class BladeSensors:
         self.bearings = np.array([system.pair(f"pitch bearing {k + 1}") for k in range(len(names))])
         pairs = system.pairs
         self._bearing_axes = pairs.offset_rotation[self.bearings, 1]
-        self._bearing_arm = pairs.offset_position[self.bearings, 1]
+        self._lever = hats(pairs.offset_position[self.bearings, 1])
         elements = self.nodes.shape[1] - 1
         self._elements = np.array(
             [[system.pair(f"{name}:{e}") for e in range(elements)] for name in names], dtype=int
@@ -91,7 +92,7 @@ class BladeSensors:
 
     def _roots(self, state: State, root: Array) -> dict[str, float | Array]:
         root = root.copy()
-        root[:, 3:] -= np.cross(self._bearing_arm, root[:, :3])
+        root[:, 3:] -= (self._lever @ root[:, :3, None])[:, :, 0]
         coned = turned(self._coned_from_root(state).transpose(0, 2, 1), root)
         pitching = turned(self.pitched, root)[:, (0, 1, 3, 4)]
         return {

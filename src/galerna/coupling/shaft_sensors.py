@@ -6,7 +6,7 @@ import numpy as np
 
 from galerna.contract import Array
 from galerna.coupling import channels as c
-from galerna.coupling.snapshot import Snapshot, named, true_acceleration, turned
+from galerna.coupling.snapshot import Snapshot, cross, named, true_acceleration, turned
 from galerna.structure.frames import rotation_about
 from galerna.structure.turbine import TurbineSystem
 from galerna.turbine.model import Turbine
@@ -49,5 +49,5 @@ class ShaftSensors:
         spin, rate = at.state.velocity[self.nacelle, 3:], at.state.acceleration[self.nacelle, 3:]
         arm = self._sensor
         sensed = true_acceleration(at.state, self.nacelle)
-        sensed = sensed + np.cross(rate, arm) + np.cross(spin, np.cross(spin, arm))
+        sensed = sensed + cross(rate, arm) + cross(spin, cross(spin, arm))
         return sensed @ self._tilted

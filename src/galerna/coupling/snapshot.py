@@ -9,8 +9,8 @@ import numpy as np
 from numba import njit
 
 from galerna.contract import Array, Channel
-from galerna.structure.blocks import apply_transposed, multiply3, multiply3_transposed
-from galerna.structure.frames import log_so3
+from galerna.structure.blocks import apply, apply_transposed, multiply3, multiply3_transposed
+from galerna.structure.frames import hat, log_so3
 from galerna.structure.pairs import Integers
 from galerna.structure.system import State
 
@@ -44,15 +44,19 @@ def turned(axes: Array, wrench: Array) -> Array:
 
 def about(wrench: Array, arm: Array) -> Array:
     """A wrench (6,) about a point that is ``arm`` (3,) away from its own."""
-    return np.concatenate([wrench[:3], wrench[3:] - np.cross(arm, wrench[:3])])
+    return np.concatenate([wrench[:3], wrench[3:] - cross(arm, wrench[:3])])
+
+
+@njit(cache=True)
+def cross(a: Array, b: Array) -> Array:
+    """Product (3,) of two vectors."""
+    return apply(hat(a), b)
 
 
 def true_acceleration(state: State, node: int) -> Array:
     """Acceleration (3,) m/s2 of a frame's origin in the frame's axes."""
     v, rate = state.velocity[node], state.acceleration[node]
-    x, y, z = v[3:]
-    a, b, c = v[:3]
-    return rate[:3] + np.array([y * c - z * b, z * a - x * c, x * b - y * a])
+    return rate[:3] + cross(v[3:], v[:3])
 
 
 def interpolation(span: Array, stations: Array) -> Array:
