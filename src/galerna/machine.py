@@ -17,6 +17,7 @@ from galerna.aero.body_drag import BodyDrag
 from galerna.case import Case, LoadedCase, Series, parse
 from galerna.channel_names import matching, nearest
 from galerna.contract import Array, Channel, LoadModel
+from galerna.control.drivetrain import PowerTrain
 from galerna.errors import InputError
 from galerna.inflow.build import BuiltInflow, build
 from galerna.inflow.sizing import RotorExtent
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
 
     from galerna.aero.vortex.model import VortexLattice
     from galerna.aero.vortex.options import VortexLatticeOptions
+    from galerna.coupling.trim import Trim
     from galerna.inflow.field import WindField
 
 
@@ -117,21 +119,24 @@ def build_machine(case: LoadedCase) -> Machine:
     with case.blame("turbine"):
         turbine = load_turbine(case)
     wind = build_wind(case, turbine)
+    trim = _trim(case, turbine, wind)
     with case.blame("operation"):
-        operation = _operation(case, turbine, wind.mean_speed)
+        operation = _operation(case, turbine, wind.mean_speed, trim)
     with case.blame("aerodynamics"):
         models = load_models(case, turbine, wind, operation)
     stations = [model.stations for model in models.values()]
     structure: Structure
     commander: Commander | None = None
-    if settings.moves:
+    if trim is not None:
         from galerna.coupling.build import control_loop, moving_machine
 
         with case.blame("structure"):
             structure = moving_machine(case, turbine, operation, stations)
+            torque = trim.start(structure, operation)
         if settings.control is not None:
             with case.blame("control"):
                 commander = control_loop(case, turbine, structure, wind.field.hub_velocity)
+                commander.torque = PowerTrain.of(turbine.drivetrain).generator_torque(torque)
     else:
         with case.blame("operation"):
             structure = PrescribedMotion(turbine, operation, stations)
@@ -213,12 +218,28 @@ def _vortex_lattice(
     )
 
 
-def _operation(case: LoadedCase, turbine: Turbine, wind_speed: float) -> PrescribedOperation:
+def _trim(case: LoadedCase, turbine: Turbine, wind: BuiltInflow) -> Trim | None:
+    """What a machine that moves starts from."""
+    if not case.case.moves:
+        return None
+    from galerna.coupling.build import trim_of
+
+    return trim_of(case, turbine, wind.field)
+
+
+def _operation(
+    case: LoadedCase, turbine: Turbine, wind_speed: float, trim: Trim | None
+) -> PrescribedOperation:
     """Rotor speed, pitch and yaw of a case in SI; what is not given comes from the turbine."""
     operation, blades = case.case.start, turbine.number_of_blades
     speed, pitch = operation.rotor_speed_rpm, operation.pitch_deg
+    yaw, azimuth = _signal(operation.yaw_deg, DEG), operation.azimuth_deg * DEG
     if operation.operating_point == "steady" and (speed is None or pitch is None):
-        point = _steady_point(case, turbine, wind_speed)
+        if trim is None:
+            point = _steady_point(case, turbine, wind_speed)
+        else:
+            still = Signal.constant(0.0)
+            point = trim.find(PrescribedOperation(still, (still,) * blades, yaw, azimuth))
         speed = point[0] / RPM if speed is None else speed
         pitch = point[1] / DEG if pitch is None else pitch
     each = pitch if isinstance(pitch, tuple) else (pitch or 0.0,) * blades
@@ -228,8 +249,8 @@ def _operation(case: LoadedCase, turbine: Turbine, wind_speed: float) -> Prescri
     return PrescribedOperation(
         rotor_speed=_signal(speed, RPM),
         pitch=tuple(_signal(angle, DEG) for angle in each),
-        yaw=_signal(operation.yaw_deg, DEG),
-        azimuth=operation.azimuth_deg * DEG,
+        yaw=yaw,
+        azimuth=azimuth,
     )
 
 

@@ -36,6 +36,10 @@ class PowerTrain:
         driven = torque * rotor_speed >= 0.0
         return torque / self.gearbox_efficiency if driven else torque * self.gearbox_efficiency
 
+    def generator_torque(self, shaft_torque: float) -> float:
+        """Torque N m on the generator's shaft that brakes a driven low-speed shaft by so much."""
+        return shaft_torque * self.gearbox_efficiency / self.gear_ratio
+
     def electrical_power(self, generator_torque: float, rotor_speed: float) -> float:
         """Power W into the grid; negative where the generator drives the rotor."""
         power = generator_torque * self.generator_speed(rotor_speed)

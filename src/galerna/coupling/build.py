@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 
 from galerna.case import LoadedCase
 from galerna.contract import Array, Stations
@@ -12,11 +13,38 @@ from galerna.coupling.controllers import controller, held_inertia, pitch_actuato
 from galerna.coupling.flexible import FlexibleMachine
 from galerna.coupling.paths import SignalPath, StepPath
 from galerna.coupling.sensors import Gauges
-from galerna.coupling.trim import start_turning
+from galerna.coupling.trim import Trim
+from galerna.inflow.field import WindField
 from galerna.kinematics import PrescribedOperation
 from galerna.structure import Scheme, TurbineOptions
 from galerna.structure.options import StructureOptions
 from galerna.turbine.model import Turbine
+
+
+def turbine_options(case: LoadedCase, operation: PrescribedOperation) -> TurbineOptions:
+    """What of a case's machine is flexible, where it stands at first, and how it is moved."""
+    settings = case.case
+    options = settings.structure or StructureOptions.rigid()
+    speed, pitch = operation.rotor_speed, operation.pitch
+    first_pitch = float(pitch[0].value[0])
+    controlled = settings.control is not None
+    return TurbineOptions(
+        blade_elements=options.blade_elements if options.blades == "flexible" else 0,
+        tower_elements=options.tower_elements if options.tower == "flexible" else 0,
+        flexible_shaft=options.shaft == "flexible",
+        flexible_yaw=options.yaw_bearing == "flexible",
+        azimuth=operation.azimuth,
+        rotor_motion=None if controlled else SignalPath(speed, integral=True),
+        pitch=first_pitch,
+        pitch_motion=tuple(
+            StepPath(float(angle.value[0]) - first_pitch)
+            if controlled
+            else SignalPath(angle, offset=-first_pitch)
+            for angle in pitch
+        ),
+        yaw_motion=SignalPath(operation.yaw),
+        gravity=(0.0, 0.0, -options.gravity_m_s2),
+    )
 
 
 def moving_machine(
@@ -25,37 +53,23 @@ def moving_machine(
     operation: PrescribedOperation,
     stations: Sequence[Sequence[Stations]],
 ) -> FlexibleMachine:
-    """The structure of a case; with a controller it starts as ``operation`` says."""
-    settings = case.case
-    options = settings.structure or StructureOptions.rigid()
-    speed, pitch = operation.rotor_speed, operation.pitch
-    first_pitch = float(pitch[0].value[0])
-    controlled = settings.control is not None
-    machine = FlexibleMachine(
+    """The structure of a case, as it was described; ``Trim.start`` sets it in motion."""
+    options = case.case.structure or StructureOptions.rigid()
+    scheme = Scheme.generalized_alpha(options.rho_inf)
+    outputs = case.case.outputs
+    gauges = Gauges(outputs.blade_stations, outputs.tower_stations)
+    return FlexibleMachine(
         turbine,
         stations,
-        TurbineOptions(
-            blade_elements=options.blade_elements if options.blades == "flexible" else 0,
-            tower_elements=options.tower_elements if options.tower == "flexible" else 0,
-            flexible_shaft=options.shaft == "flexible",
-            flexible_yaw=options.yaw_bearing == "flexible",
-            azimuth=operation.azimuth,
-            rotor_motion=None if controlled else SignalPath(speed, integral=True),
-            pitch=first_pitch,
-            pitch_motion=tuple(
-                StepPath(float(angle.value[0]) - first_pitch)
-                if controlled
-                else SignalPath(angle, offset=-first_pitch)
-                for angle in pitch
-            ),
-            yaw_motion=SignalPath(operation.yaw),
-            gravity=(0.0, 0.0, -options.gravity_m_s2),
-        ),
-        scheme=Scheme.generalized_alpha(options.rho_inf),
-        gauges=Gauges(settings.outputs.blade_stations, settings.outputs.tower_stations),
+        turbine_options(case, operation),
+        scheme=scheme,
+        gauges=gauges,
     )
-    start_turning(machine, float(speed.value[0]))
-    return machine
+
+
+def trim_of(case: LoadedCase, turbine: Turbine, wind: WindField) -> Trim:
+    """What a case starts from."""
+    return Trim(case, turbine, wind, partial(turbine_options, case))
 
 
 def control_loop(

@@ -1,11 +1,16 @@
-"""Angles that are moved: straight over one step to where a controller wants them, or prescribed."""
+"""How joints and the base are moved: to where a controller wants them, or as is prescribed."""
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from galerna.contract import Array
 from galerna.signals import Signal, evaluate
+from galerna.structure.frames import rotation_about
 
 
 class StepPath:
@@ -22,6 +27,10 @@ class StepPath:
     def go(self, angle: float, time: float, duration: float) -> None:
         """Reach ``angle`` rad ``duration`` s after ``time``."""
         self.start, self.end, self.time, self.duration = self.end, angle, time, duration
+
+    def hold(self, angle: float) -> None:
+        """Be at ``angle`` rad, always."""
+        self.start, self.end, self.time, self.duration = angle, angle, 0.0, 0.0
 
     def state(self) -> Array:
         """Start, end, time and duration (4,)."""
@@ -42,3 +51,54 @@ class SignalPath:
     def __call__(self, time: float) -> float:
         value = evaluate(self._knots, 0, len(self._knots), time)[self._column]
         return float(value) + self._offset
+
+
+@dataclass(frozen=True)
+class Harmonic:
+    """``mean + amplitude sin(2 pi frequency t + phase)``; the amplitude grows over ``ramp`` s."""
+
+    mean: float
+    amplitude: float
+    frequency: float
+    phase: float = 0.0
+    ramp: float = 0.0
+
+    def __call__(self, time: float) -> float:
+        share = min(max(time / self.ramp, 0.0), 1.0) if self.ramp else 1.0
+        grown = share**3 * (10.0 - 15.0 * share + 6.0 * share**2)  # no jump in velocity, rate
+        angle = 2.0 * np.pi * self.frequency * time + self.phase
+        return self.mean + grown * self.amplitude * float(np.sin(angle))
+
+
+class Spline:
+    """A cubic spline through knots, at rest before the first and after the last of them.
+
+    ``time`` (n,) s rises, ``value`` (n,). Accelerations are finite everywhere.
+    """
+
+    def __init__(self, time: Array, value: Array) -> None:
+        self._first, self._last, self._value = time[0], time[-1], float(value[0])
+        self._curve = CubicSpline(time, value, bc_type="clamped") if len(time) > 1 else None
+
+    def __call__(self, time: float) -> float:
+        if self._curve is None:
+            return self._value
+        return float(self._curve(min(max(time, self._first), self._last)))
+
+
+class BasePath:
+    """Where the base is and how it is turned: about z first, then about y, about x last.
+
+    ``place`` (3,) m is where it stands without motion; ``motion`` has the six displacements m
+    and angles rad over time, by the names of the platform's degrees of freedom.
+    """
+
+    def __init__(self, place: Array, motion: Mapping[str, Callable[[float], float]]) -> None:
+        self._place = np.asarray(place, dtype=float)
+        self._shift = [motion[name] for name in ("surge", "sway", "heave")]
+        self._turn = [motion[name] for name in ("roll", "pitch", "yaw")]
+
+    def __call__(self, time: float) -> tuple[Array, Array]:
+        shift = np.array([along(time) for along in self._shift])
+        roll, pitch, yaw = (rotation_about(k, about(time)) for k, about in enumerate(self._turn))
+        return self._place + shift, yaw @ pitch @ roll
