@@ -23,6 +23,7 @@ from galerna.control.discon_records import MEASURED
 from galerna.control.interface import Demands, Measurements
 from galerna.control.options import DisconOptions
 from galerna.errors import ControllerError, InputError
+from galerna.simulation import Callback, Simulation
 from galerna.units import RPM
 
 NREL = turbines.load("nrel5mw")
@@ -80,13 +81,21 @@ def calls(folder: Path) -> list[int]:
 def gone(pid: int, within: float = 5.0) -> bool:
     """Whether a process ends within a time in s."""
     end = time.monotonic() + within
-    while time.monotonic() < end:
-        try:
-            os.kill(pid, 0)
-        except ProcessLookupError:
-            return True
+    while runs(pid):
+        if time.monotonic() > end:
+            return False
         time.sleep(0.02)
-    return False
+    return True
+
+
+def runs(pid: int) -> bool:
+    """Whether a process is there, and not only its number, which waits to be asked for."""
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return False
+    status = Path(f"/proc/{pid}/stat")
+    return not (status.exists() and status.read_text().rpartition(")")[2].split()[0] == "Z")
 
 
 def test_measurements_go_in_and_demands_come_out(make):
@@ -315,6 +324,7 @@ def case_with(library: Path, folder: Path, **control) -> dict:
     return {
         "galerna": 1, "turbine": "nrel5mw", "duration_s": 0.4, "time_step_s": 0.1,
         "inflow": {"wind_speed_m_s": 18.0}, "structure": "rigid",
+        "operation": {"rotor_speed_rpm": 12.1, "pitch_deg": 14.8},
         "control": {
             "model": "discon", "library": str(library), "input_file": str(folder / "word.in"),
             **control,
@@ -335,6 +345,39 @@ def test_a_run_closes_its_library(stub, tmp_path):
     (tmp_path / "word.in").write_text("pass\n")
     galerna.run(case_with(stub, tmp_path))
     assert calls(tmp_path) == [0, 1, 1, 1, -1]
+
+
+class Stop(Callback):
+    """What Ctrl-C does at a time in s."""
+
+    def __init__(self, time: float) -> None:
+        self.time = time
+
+    def accepted(self, simulation: Simulation) -> None:
+        if simulation.time >= self.time - 1e-9:
+            raise KeyboardInterrupt
+
+
+def test_an_interrupted_run_resumes_to_the_same_bits(stub, tmp_path):
+    (tmp_path / "word.in").write_text("pass\n")
+    case = case_with(stub, tmp_path)
+    straight = galerna.run(case)
+    with pytest.raises(KeyboardInterrupt):
+        galerna.run(case, tmp_path / "result.nc", callbacks=[Stop(0.2)])
+    assert calls(tmp_path)[-3:] == [0, 1, -1]
+    resumed = galerna.resume(tmp_path / "result.nc")
+    assert calls(tmp_path)[-5:] == [0, 1, 1, 1, -1]
+    for name in straight.data_vars:
+        np.testing.assert_array_equal(resumed[name], straight[name], err_msg=str(name))
+
+
+def test_a_library_that_was_changed_cannot_be_resumed(stub, tmp_path):
+    (tmp_path / "word.in").write_text("pass\n")
+    with pytest.raises(KeyboardInterrupt):
+        galerna.run(case_with(stub, tmp_path), tmp_path / "result.nc", callbacks=[Stop(0.2)])
+    (tmp_path / "word.in").write_text("off\n")
+    with pytest.raises(InputError, match="it cannot be resumed"):
+        galerna.resume(tmp_path / "result.nc")
 
 
 def test_the_sample_time_is_a_whole_number_of_steps(stub, tmp_path):
