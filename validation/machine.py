@@ -11,6 +11,7 @@ import numpy as np
 import xarray
 
 import galerna
+from galerna import examples
 from galerna.contract import Array
 from galerna.inflow.box import Box
 from galerna.inflow.bts import write_bts
@@ -73,12 +74,7 @@ def write_wind_of_openfast(folder: Path) -> Path:
 
 
 def rosco_input() -> Path:
-    """ROSCO's own input for the NREL 5 MW; NotRunError where its wheel is not installed."""
-    package = find_spec("rosco")
-    if package is None or not package.submodule_search_locations:
-        raise NotRunError("needs ROSCO: pip install --no-deps rosco")
-    examples = Path(package.submodule_search_locations[0]).parent / "Examples"
-    path = examples / "Test_Cases" / "NREL-5MW" / "DISCON.IN"
-    if not path.is_file():
-        raise NotRunError(f"needs the example of ROSCO's wheel, {path}")
-    return path
+    """ROSCO's own input for the NREL 5 MW; NotRunError where its library is not installed."""
+    if find_spec("rosco") is None:
+        raise NotRunError("needs ROSCO's library: pip install --no-deps rosco")
+    return examples.folder() / "rosco_nrel5mw" / "DISCON.IN"
