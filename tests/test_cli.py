@@ -12,6 +12,7 @@ import time
 import pytest
 from typer.testing import CliRunner
 
+from galerna import checkpoints
 from galerna.cli import app, main
 from galerna.results import open_result
 
@@ -241,6 +242,26 @@ def test_interrupting_leaves_a_result(case, sent, code, word):
     result = open_result(case.with_suffix(".nc"))
     assert result.sizes["time"] > 0
     assert result.attrs["status"].endswith(f"s: {word}")
+    assert "galerna resume" in error
+    kept = checkpoints.read(case.with_suffix(".nc")).origin
+    assert kept.records == result.sizes["time"]
+    assert kept.time == pytest.approx(float(result["time"][-1]), abs=0.11)
+
+
+def test_a_kept_checkpoint_lets_a_run_go_on(case, capsys):
+    assert galerna("run", case, "--duration", 1, "--keep-checkpoint") == 0
+    assert galerna("resume", "case.nc") == 2
+    assert "a longer --duration" in capsys.readouterr().err
+    assert galerna("resume", "case.nc.checkpoint", "--duration", 2) == 0
+    captured = capsys.readouterr()
+    assert "goes on at 1 s" in captured.err
+    assert "result: case.nc" in captured.out
+    assert open_result("case.nc").sizes["time"] == 20
+
+
+def test_what_has_no_checkpoint_is_not_resumed(case, capsys):
+    assert galerna("resume", "case.nc") == 2
+    assert "there is no checkpoint beside this result" in capsys.readouterr().err
 
 
 def test_turbines_and_their_figures(capsys):

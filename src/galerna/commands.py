@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import json
 import shutil
-import signal
 import sys
-from collections.abc import Iterator
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import AbstractContextManager, closing, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,8 +14,6 @@ from galerna.errors import GalernaError, InputError
 from galerna.report import tables
 
 if TYPE_CHECKING:
-    from types import FrameType
-
     import xarray
 
     from galerna.case import Case, LoadedCase
@@ -38,37 +34,6 @@ NOT_IN_A_BOX = (
 )
 
 MOST_NOTICES = 5  #: that are printed after a run
-
-
-class InterruptedRunError(GalernaError):
-    """The user pressed Ctrl-C, or something sent SIGTERM."""
-
-    def __init__(self, interrupt: KeyboardInterrupt) -> None:
-        super().__init__(str(interrupt) or "interrupted")
-        terminated = isinstance(interrupt, Terminated)
-        self.exit_code = 128 + (signal.SIGTERM if terminated else signal.SIGINT)
-        for note in getattr(interrupt, "__notes__", ()):
-            self.add_note(note)
-
-
-class Terminated(KeyboardInterrupt):
-    """SIGTERM, which a batch system sends before it kills, ends a run as Ctrl-C does."""
-
-
-def _terminate(number: int, frame: FrameType | None) -> None:
-    raise Terminated("terminated")
-
-
-@contextmanager
-def interruptible() -> Iterator[None]:
-    """Turn Ctrl-C and SIGTERM into an error that keeps the notes on what was saved."""
-    before = signal.signal(signal.SIGTERM, _terminate)
-    try:
-        yield
-    except KeyboardInterrupt as interrupt:
-        raise InterruptedRunError(interrupt) from None
-    finally:
-        signal.signal(signal.SIGTERM, before)
 
 
 def making_wind(case: Case) -> AbstractContextManager[None]:
@@ -96,6 +61,7 @@ def run(
 ) -> None:
     """Simulate a case with a progress bar and print the statistics of its result."""
     from galerna.case import load
+    from galerna.interrupting import interruptible
     from galerna.results.store import check_free
 
     loaded = load(case) if duration is None else load(case).lasting(duration)
@@ -110,6 +76,7 @@ def resume(
 ) -> None:
     """Go on from a checkpoint, as ``run`` goes from the start."""
     from galerna import running
+    from galerna.interrupting import interruptible
     from galerna.progress import working
 
     path = running.result_of(result)
@@ -128,11 +95,12 @@ def _simulate(
     resumed: Checkpoint | None = None,
 ) -> None:
     from galerna import running
+    from galerna.interrupting import AfterTheStep
     from galerna.progress import best
 
-    shown = [best(sys.stderr.isatty())]
+    beside = [best(sys.stderr.isatty()), AfterTheStep()]
     try:
-        result = running.simulate(machine, path, overwrite, shown, saving, resumed)
+        result = running.simulate(machine, path, overwrite, beside, saving, resumed)
     finally:
         _print_notices(machine)
     tables.print_statistics(result, path)
@@ -155,8 +123,6 @@ def _default_output(case: str) -> Path:
 
 def check(case: str) -> None:
     """Build everything that a run needs, and say what it is."""
-    from contextlib import closing
-
     from galerna.case import load
     from galerna.compiling import announced
 
@@ -178,6 +144,7 @@ def demo(folder: Path, duration: float | None) -> None:
     """Run the demonstration case into a folder of its own, and draw it."""
     from galerna import running
     from galerna.case import load
+    from galerna.interrupting import AfterTheStep, interruptible
     from galerna.progress import best
     from galerna.report import plot_result
 
@@ -185,8 +152,9 @@ def demo(folder: Path, duration: float | None) -> None:
     machine = _build(loaded)
     tables.print_pairs(machine.describe())
     path = folder / "demo.nc"
+    beside = [best(sys.stderr.isatty()), AfterTheStep()]
     with interruptible():
-        result = running.simulate(machine, path, True, [best(sys.stderr.isatty())])
+        result = running.simulate(machine, path, True, beside)
     tables.print_statistics(result, path)
     _print_pictures(plot_result(result, folder, wind=machine.wind.field))
 
