@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from itertools import pairwise
 from typing import Annotated, Any, Literal, Self
 
@@ -99,6 +100,11 @@ def _control(value: Any) -> Any:
     if isinstance(value, dict) and "model" not in value:
         return {"model": "baseline", **value}
     return value
+
+
+def _or_words(*words: str) -> Callable[[dict[str, Any]], None]:
+    """Lets the schema of a block take words that stand for it."""
+    return lambda schema: schema["anyOf"].insert(0, {"enum": list(words)})
 
 
 class BaseMotion(Block):
@@ -199,6 +205,7 @@ class Case(Block):
         None,
         description="How the machine moves: `flexible`, `rigid`, or a block that says it of each "
         "part. Left out, nothing bends, and without a controller all motion is prescribed.",
+        json_schema_extra=_or_words("flexible", "rigid"),
     )
     base_motion: BaseMotion | None = Field(
         None, description="Prescribed motion of the tower's foot or of the platform."
@@ -207,6 +214,7 @@ class Case(Block):
         None,
         description="The controller: `baseline`, `discon`, `python`, `external`, or a block. "
         "Left out, `operation` prescribes rotor speed, pitch and yaw.",
+        json_schema_extra=_or_words("baseline", "discon", "python", "external"),
     )
     operation: Operation | None = Field(
         None,
