@@ -178,6 +178,11 @@ class Outputs(Block):
         description="Where loads and displacements of a flexible tower are shown, as fractions "
         "of its axis.",
     )
+    energy: bool = Field(
+        False,
+        description="Keep the account of the wind's work in a machine that moves: the channels "
+        "`energy_*`. It makes a step slower by a tenth.",
+    )
 
 
 class Case(Block):

@@ -63,7 +63,7 @@ def moving_machine(
         stations,
         turbine_options(case, operation),
         scheme=scheme,
-        gauges=gauges,
+        gauges=gauges, energy=outputs.energy,
     )
 
 
@@ -82,7 +82,7 @@ def control_loop(
     options = case.case.control
     assert options is not None
     structure = case.case.structure or StructureOptions.rigid()
-    return ControlLoop(
+    loop = ControlLoop(
         machine,
         controller(case, turbine),
         PowerTrain.of(turbine.drivetrain),
@@ -92,3 +92,5 @@ def control_loop(
         torque_lag=options.torque_time_constant_s,
         held_inertia=held_inertia(turbine, structure.shaft == "flexible"),
     )
+    machine.given = loop.power_given
+    return loop

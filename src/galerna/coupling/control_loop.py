@@ -165,6 +165,16 @@ class ControlLoop:
     def _torque_now(self) -> float:
         return 0.0 if np.isnan(self.torque) else self.torque
 
+    def power_given(self, speed: float) -> Array:
+        """Power (3,) W into the grid, into gearbox and generator as losses, and into the brake.
+
+        At a ``speed`` rad/s of the generator, seen at the low-speed shaft.
+        """
+        torque = self._torque_now
+        electrical = self._train.electrical_power(torque, speed)
+        losses = self._train.shaft_torque(torque, speed) * speed - electrical
+        return np.array([electrical, losses, self._braking * speed])
+
     def record(self) -> Mapping[str, float | Array]:
         """The channels of the accepted state."""
         torque, speed, demands = self._torque_now, self.machine.drive_speed, self.demands

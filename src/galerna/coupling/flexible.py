@@ -6,12 +6,14 @@ by the transpose. One ``balance`` is one step of Newton's method of the whole st
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from galerna.contract import Array, Loads, Stations
+from galerna.coupling.energy import CHANNELS as ENERGY_CHANNELS
+from galerna.coupling.energy import EnergyLedger
 from galerna.coupling.paths import StepPath
 from galerna.coupling.sensors import Gauges, Sensors, rows_of
 from galerna.errors import InputError, did_you_mean
@@ -91,6 +93,7 @@ class FlexibleMachine:
         scheme: Scheme | None = None,
         tolerance: Tolerance | None = None,
         gauges: Gauges | None = None,
+        energy: bool = False,
     ) -> None:
         options = options or TurbineOptions()
         blades = turbine.number_of_blades
@@ -109,7 +112,10 @@ class FlexibleMachine:
         self.loads: Sequence[Loads] = ()  #: of the load models, in the last balance
         tower = [_riding(turbine, self.parts, group, "tower") for group in stations]
         self.sensors = Sensors(turbine, self.parts, options.pitch, tower, gauges or Gauges())
-        self.channels = CHANNELS + self.sensors.channels
+        self.ledger = EnergyLedger(self.system, self.integrator.scheme) if energy else None
+        self.given: Callable[[float], Array] = lambda speed: np.zeros(3)  #: W, see EnergyLedger
+        accounts = ENERGY_CHANNELS if energy else ()
+        self.channels = CHANNELS + self.sensors.channels + accounts
         numbers = np.arange(1.0, blades + 1.0)
         self.coordinates: Mapping[str, Array] = {"blade": numbers, **self.sensors.coordinates}
         names = self.system.names
@@ -182,6 +188,8 @@ class FlexibleMachine:
     def accept(self) -> None:
         """Commit the step."""
         self.start(self._trial.settled())
+        if self.ledger is not None:
+            self.ledger.add(self.accepted, self._forces.follower, self.given(self.drive_speed))
 
     def reject(self, time: float) -> None:
         """Return to the accepted state."""
@@ -203,6 +211,7 @@ class FlexibleMachine:
             "pitch": self.pitch_angles(self.accepted.time),
             "yaw": self.yaw,
             **self.sensors.record(self.accepted, self.loads, self.rotor_speed),
+            **(self.ledger.values() if self.ledger is not None else {}),
         }
 
     def root_moments(self) -> Array:
@@ -222,7 +231,8 @@ class FlexibleMachine:
         arrays = {name: getattr(self.accepted, name).copy() for name in ARRAYS}
         paths = [path.state() for path in self.pitch if isinstance(path, StepPath)]
         commands = {"shaft_torque": np.array(self.shaft_torque), "pitch_paths": np.array(paths)}
-        return {"time": np.array(self.accepted.time), **arrays, **commands}
+        account = self.ledger.state() if self.ledger is not None else {}
+        return {"time": np.array(self.accepted.time), **arrays, **commands, **account}
 
     def restore(self, state: Mapping[str, np.ndarray]) -> None:
         """Take ``state`` back."""
@@ -231,6 +241,8 @@ class FlexibleMachine:
         for path, saved in zip(moved, state["pitch_paths"], strict=True):
             path.restore(saved)
         self.start(State(float(state["time"]), *(state[name].copy() for name in ARRAYS)))
+        if self.ledger is not None:
+            self.ledger.restore(state, self.accepted)
 
     def _follow(self, state: State) -> None:
         for riders in self._riders:
