@@ -22,6 +22,7 @@ MODULES = (
     "lattice_rotors",
     "lattice_yaw",
     "lattice_turbulence",
+    "machine_energy",
 )
 
 
