@@ -35,7 +35,7 @@ def doubts(
         )
     if isinstance(case.aerodynamics, VortexLatticeOptions) and not case.aerodynamics.decambering:
         yield from _about_attached_flow(turbine, operation.rotor_speed.value, mean_wind)
-    if turbine.platform is not None:
+    if turbine.platform is not None and case.base_motion is None:
         yield "the platform is held still: no hydrodynamics yet"
 
 

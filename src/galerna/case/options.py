@@ -74,6 +74,29 @@ PerBlade = Annotated[
 ]
 
 
+class Harmonic(Block):
+    """A swing about a mean: mean + amplitude sin(2 pi frequency t + phase)."""
+
+    mean: FiniteFloat = Field(0.0, description="About which it swings.")
+    amplitude: FiniteFloat = Field(description="How far it swings to either side.")
+    frequency_hz: PositiveFloat = Field(description="Swings in a second.")
+    phase_deg: FiniteFloat = Field(0.0, description="Where in the swing it is at time 0.")
+    ramp_s: NonNegativeFloat = Field(
+        0.0, description="Time from 0 on in which the amplitude grows from nothing, smoothly."
+    )
+
+
+def _smooth_form(value: Any) -> str:
+    harmonic = isinstance(value, Harmonic) or (isinstance(value, dict) and "amplitude" in value)
+    return "harmonic" if harmonic else _form(value)
+
+
+SmoothOverTime = Annotated[
+    Number | Annotated[Series, Tag("series")] | Annotated[Harmonic, Tag("harmonic")],
+    Discriminator(_smooth_form),
+]
+
+
 def _model(value: Any) -> str:
     """Which aerodynamic model a block is for: blade-element momentum where it does not say."""
     if isinstance(value, dict):
@@ -110,15 +133,16 @@ def _or_words(*words: str) -> Callable[[dict[str, Any]], None]:
 class BaseMotion(Block):
     """How the foot of the tower, or the platform's reference point, is made to move.
 
-    A number stands for an offset that stays.
+    A number stands for an offset that stays, a series for a smooth curve (a cubic spline)
+    through its points. Turns are about the moved point, z first and x last.
     """
 
-    surge_m: OverTime = Field(0.0, description="Along x.")
-    sway_m: OverTime = Field(0.0, description="Along y.")
-    heave_m: OverTime = Field(0.0, description="Along z.")
-    roll_deg: OverTime = Field(0.0, description="About x, the last of the three turns.")
-    pitch_deg: OverTime = Field(0.0, description="About y.")
-    yaw_deg: OverTime = Field(0.0, description="About z, the first of the three turns.")
+    surge_m: SmoothOverTime = Field(0.0, description="Along x.")
+    sway_m: SmoothOverTime = Field(0.0, description="Along y.")
+    heave_m: SmoothOverTime = Field(0.0, description="Along z.")
+    roll_deg: SmoothOverTime = Field(0.0, description="About x, the last of the three turns.")
+    pitch_deg: SmoothOverTime = Field(0.0, description="About y.")
+    yaw_deg: SmoothOverTime = Field(0.0, description="About z, the first of the three turns.")
 
 
 class Operation(Block):

@@ -8,12 +8,14 @@ from functools import partial
 from galerna.case import LoadedCase
 from galerna.contract import Array, Stations
 from galerna.control.drivetrain import PowerTrain
+from galerna.coupling.base import base_path
 from galerna.coupling.control_loop import ControlLoop
 from galerna.coupling.controllers import controller, held_inertia, pitch_actuator, sample_time
 from galerna.coupling.flexible import FlexibleMachine
 from galerna.coupling.paths import SignalPath, StepPath
 from galerna.coupling.sensors import Gauges
 from galerna.coupling.trim import Trim
+from galerna.errors import InputError
 from galerna.inflow.field import WindField
 from galerna.kinematics import PrescribedOperation
 from galerna.structure import Scheme, TurbineOptions
@@ -21,11 +23,17 @@ from galerna.structure.options import StructureOptions
 from galerna.turbine.model import Turbine
 
 
-def turbine_options(case: LoadedCase, operation: PrescribedOperation) -> TurbineOptions:
-    """What of a case's machine is flexible, where it stands at first, and how it is moved."""
+def turbine_options(
+    case: LoadedCase, turbine: Turbine, operation: PrescribedOperation
+) -> TurbineOptions:
+    """What of a case's machine is flexible, where it stands at first, and how it is moved.
+
+    Raises InputError for a part whose sectional data the turbine does not give.
+    """
     settings = case.case
     options = settings.structure or StructureOptions.rigid()
-    speed, pitch = operation.rotor_speed, operation.pitch
+    _require_sections(turbine, options)
+    speed, pitch, yaw = operation.rotor_speed, operation.pitch, operation.yaw
     first_pitch = float(pitch[0].value[0])
     controlled = settings.control is not None
     return TurbineOptions(
@@ -42,9 +50,21 @@ def turbine_options(case: LoadedCase, operation: PrescribedOperation) -> Turbine
             else SignalPath(angle, offset=-first_pitch)
             for angle in pitch
         ),
-        yaw_motion=SignalPath(operation.yaw),
+        yaw_motion=StepPath(float(yaw.value[0])) if controlled else SignalPath(yaw),
+        base_motion=base_path(turbine, settings.base_motion),
         gravity=(0.0, 0.0, -options.gravity_m_s2),
     )
+
+
+def _require_sections(turbine: Turbine, options: StructureOptions) -> None:
+    """InputError for a part that cannot bend, or not even be moved, for want of data."""
+    if turbine.blade.structure is None:
+        what = f"{turbine.name!r} gives no sectional stiffness and inertia of its blades"
+        hint = "leave out structure, control and base_motion: its motion is prescribed then"
+        raise InputError("blades", what, hint)
+    if turbine.tower.structure is None and options.tower == "flexible":
+        what = f"{turbine.name!r} gives no sectional stiffness and inertia of its tower"
+        raise InputError("tower", what, "make it rigid with `tower: rigid`")
 
 
 def moving_machine(
@@ -61,15 +81,17 @@ def moving_machine(
     return FlexibleMachine(
         turbine,
         stations,
-        turbine_options(case, operation),
+        turbine_options(case, turbine, operation),
         scheme=scheme,
-        gauges=gauges, energy=outputs.energy,
+        gauges=gauges,
+        energy=outputs.energy,
+        loose=options.coupling == "loose",
     )
 
 
 def trim_of(case: LoadedCase, turbine: Turbine, wind: WindField) -> Trim:
     """What a case starts from."""
-    return Trim(case, turbine, wind, partial(turbine_options, case))
+    return Trim(case, turbine, wind, partial(turbine_options, case, turbine))
 
 
 def control_loop(

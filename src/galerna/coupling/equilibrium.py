@@ -21,7 +21,7 @@ from galerna.coupling.flexible import FlexibleMachine
 from galerna.coupling.paths import StepPath
 from galerna.errors import ConvergenceError
 from galerna.structure import TurbineOptions
-from galerna.structure.frames import exp_so3, rotation_about
+from galerna.structure.frames import exp_so3
 from galerna.structure.pairs import Integers
 from galerna.structure.statics import static_equilibrium
 from galerna.structure.system import Forces, State, with_spin
@@ -78,7 +78,7 @@ class SteadyMachine:
             self._models.append(BodyDrag(turbine, inflow, air_density=air_density))
         self._not_started = self.rotor.state()
         chosen = options or TurbineOptions()
-        self._built_pitch, self._yaw = chosen.pitch, chosen.yaw_motion
+        self._built_pitch = chosen.pitch
         self._azimuth = StepPath(0.0)
         self._pitch = tuple(StepPath(0.0) for _ in range(turbine.number_of_blades))
         driven = replace(chosen, rotor_motion=self._azimuth, pitch_motion=self._pitch)
@@ -90,7 +90,7 @@ class SteadyMachine:
         self._nacelle, self._hub = names.index("nacelle"), names.index("hub")
         self.rotor_nodes = rotor_nodes(self.machine)
         built = np.full(turbine.number_of_blades, chosen.pitch)
-        self._known = {0.0: (self._yawed(self.system.initial_state()), built)}
+        self._known = {0.0: (self.machine.accepted, built)}
 
     def at(self, rotor_speed: float, pitch: Array, wake_pitch: Array | None = None) -> SteadyPoint:
         """The machine at a rotor speed rad/s and pitch (b,) rad.
@@ -196,14 +196,6 @@ class SteadyMachine:
         """Axis (3,) about which blade ``k`` pitches towards feather, in the hub's axes."""
         _, axes = self.parts.places[f"blade{k + 1}"]
         return -self.parts.places["hub"][1].T @ axes[:, 2]
-
-    def _yawed(self, state: State) -> State:
-        """The first shape with its nacelle and rotor turned to the yaw of time 0."""
-        if self._yaw is not None:
-            nodes = np.append(self.rotor_nodes, self._nacelle)
-            top = state.position[self._nacelle].copy()
-            turn(state, nodes, top, rotation_about(2, float(self._yaw(0.0))))
-        return state
 
 
 def _held(turbine: Turbine, options: TurbineOptions) -> TurbineOptions:

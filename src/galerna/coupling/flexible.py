@@ -16,13 +16,14 @@ from galerna.coupling.energy import CHANNELS as ENERGY_CHANNELS
 from galerna.coupling.energy import EnergyLedger
 from galerna.coupling.paths import StepPath
 from galerna.coupling.sensors import Gauges, Sensors, rows_of
-from galerna.errors import InputError, did_you_mean
+from galerna.errors import ConvergenceError, InputError, did_you_mean
 from galerna.kinematics import CHANNELS
 from galerna.structure.attachment import Attachment
 from galerna.structure.frames import rotation_about
 from galerna.structure.integrators import Integrator, Scheme, Tolerance, Trial
 from galerna.structure.joints import Angle
 from galerna.structure.pairs import Integers
+from galerna.structure.placing import placed
 from galerna.structure.system import ARRAYS, Forces, State
 from galerna.structure.turbine import TurbineOptions, TurbineSystem, turbine_system
 from galerna.turbine.geometry import part_frames
@@ -32,7 +33,7 @@ from galerna.turbine.model import Turbine
 #: standard deviation (docs/theory/machine.md)
 TOLERANCE = Tolerance(
     relative=1e-4, displacement=1e-6, rotation=1e-6, velocity=1e-4, angular_velocity=1e-4,
-    force=10.0, moment=10.0,
+    force=10.0, moment=10.0, iterations=25,
 )  # fmt: skip
 
 
@@ -76,12 +77,22 @@ def _riding(
     return (attach(turbine, system, chosen), rows) if chosen else None
 
 
+def _in_words(parts: TurbineSystem, frame: str) -> str:
+    """A frame's name, with its place on a part that has several."""
+    name, _, rest = frame.partition("[")
+    if not rest or name not in parts.span:
+        return frame
+    return f"{name} at {parts.span[name][int(rest.rstrip(']'))]:.1%} of its span"
+
+
 class FlexibleMachine:
     """A turbine's structure under its load models; see ``simulation.Structure``.
 
-    ``stations`` holds the stations of every load model. The blades pitch as
-    ``options.pitch_motion`` says, or are moved by ``go_pitch``. Raises InputError for a part
-    that the turbine does not have.
+    ``stations`` holds the stations of every load model. Blades and nacelle turn as
+    ``options.pitch_motion`` and ``options.yaw_motion`` say, or are moved by ``go_pitch`` and
+    ``go_yaw``. With ``loose`` coupling the loads of a step are those of the predicted motion.
+    Raises InputError for a part that the turbine does not have. With ``energy`` it keeps an
+    account of the wind's work.
     """
 
     def __init__(
@@ -94,6 +105,7 @@ class FlexibleMachine:
         tolerance: Tolerance | None = None,
         gauges: Gauges | None = None,
         energy: bool = False,
+        loose: bool = False,
     ) -> None:
         options = options or TurbineOptions()
         blades = turbine.number_of_blades
@@ -101,7 +113,11 @@ class FlexibleMachine:
         self.pitch: tuple[Angle, ...] = options.pitch_motion or tuple(
             StepPath(0.0) for _ in range(blades)
         )
-        self.parts = turbine_system(turbine, replace(options, pitch_motion=self.pitch))
+        self.yaw_drive: Angle = options.yaw_motion or StepPath(0.0)
+        self._loose = loose
+        self.parts = turbine_system(
+            turbine, replace(options, pitch_motion=self.pitch, yaw_motion=self.yaw_drive)
+        )
         self.system = self.parts.system
         self.integrator = Integrator(
             self.system, scheme or Scheme.generalized_alpha(), tolerance or TOLERANCE
@@ -123,7 +139,7 @@ class FlexibleMachine:
         self._driven = names.index("generator") if "generator" in names else self._hub
         self._tilted = rotation_about(1, turbine.nacelle.tilt)
         self.shaft_torque = 0.0  #: N m that drives the low-speed shaft; a generator's is negative
-        self.start(self.system.initial_state())
+        self.start(placed(self.system, 0.0))
 
     def start(self, state: State) -> None:
         """Take a state as accepted: an equilibrium, or one that was saved."""
@@ -140,6 +156,11 @@ class FlexibleMachine:
         for path, angle in zip(self.pitch, pitch, strict=True):
             assert isinstance(path, StepPath), "the pitch is prescribed"
             path.go(angle - self._pitch_offset, time, dt)
+
+    def go_yaw(self, angle: float, time: float, dt: float) -> None:
+        """Drive the yaw bearing to ``angle`` rad within the ``dt`` s after ``time``."""
+        assert isinstance(self.yaw_drive, StepPath), "the yaw is prescribed"
+        self.yaw_drive.go(angle, time, dt)
 
     def pitch_angles(self, time: float) -> Array:
         """Pitch (b,) rad at a time in s."""
@@ -176,14 +197,31 @@ class FlexibleMachine:
     def predict(self, time: float, dt: float) -> None:
         """Begin a step of ``dt`` s from the accepted state."""
         self._trial: Trial = self.integrator.begin(self.accepted, dt)
+        self._corrections = 0
         self._follow(self._trial.state)
 
     def balance(self, loads: Sequence[Loads]) -> bool:
-        """Correct the trial under the loads; True where that did not move it any more."""
-        if self._trial.correct(self.forces(loads)):
-            return True
-        self._follow(self._trial.state)
-        return False
+        """Correct the trial under the loads; True where that did not move it any more.
+
+        Raises ConvergenceError, with the frame that is furthest from balance.
+        """
+        forces = self.forces(loads)
+        balanced = self._corrected(forces)
+        while self._loose and not balanced:
+            balanced = self._corrected(forces)
+        if not balanced:
+            self._follow(self._trial.state)
+        return balanced
+
+    def _corrected(self, forces: Forces) -> bool:
+        self._corrections += 1
+        try:
+            if self._corrections > self.integrator.tolerance.iterations:
+                raise self._trial.failure(self._corrections - 1)
+            return self._trial.correct(forces)
+        except ConvergenceError as error:
+            where = f"structure, {_in_words(self.parts, error.where)}"
+            raise ConvergenceError(where, error.what, error.hint, error.time) from error
 
     def accept(self) -> None:
         """Commit the step."""
@@ -229,20 +267,24 @@ class FlexibleMachine:
     def state(self) -> dict[str, np.ndarray]:
         """All that the next step depends on."""
         arrays = {name: getattr(self.accepted, name).copy() for name in ARRAYS}
-        paths = [path.state() for path in self.pitch if isinstance(path, StepPath)]
-        commands = {"shaft_torque": np.array(self.shaft_torque), "pitch_paths": np.array(paths)}
+        paths = np.array([path.state() for path in self._driven_paths])
+        commands = {"shaft_torque": np.array(self.shaft_torque), "paths": paths}
         account = self.ledger.state() if self.ledger is not None else {}
         return {"time": np.array(self.accepted.time), **arrays, **commands, **account}
 
     def restore(self, state: Mapping[str, np.ndarray]) -> None:
         """Take ``state`` back."""
         self.set_shaft_torque(float(state["shaft_torque"]))
-        moved = [path for path in self.pitch if isinstance(path, StepPath)]
-        for path, saved in zip(moved, state["pitch_paths"], strict=True):
+        for path, saved in zip(self._driven_paths, state["paths"], strict=True):
             path.restore(saved)
         self.start(State(float(state["time"]), *(state[name].copy() for name in ARRAYS)))
         if self.ledger is not None:
             self.ledger.restore(state, self.accepted)
+
+    @property
+    def _driven_paths(self) -> list[StepPath]:
+        """What a controller moves."""
+        return [path for path in (*self.pitch, self.yaw_drive) if isinstance(path, StepPath)]
 
     def _follow(self, state: State) -> None:
         for riders in self._riders:

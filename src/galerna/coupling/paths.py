@@ -71,19 +71,26 @@ class Harmonic:
 
 
 class Spline:
-    """A cubic spline through knots, at rest before the first and after the last of them.
+    """A cubic spline through knots: accelerations are finite everywhere.
 
-    ``time`` (n,) s rises, ``value`` (n,). Accelerations are finite everywhere.
+    ``time`` (n,) s rises, ``value`` (n,). It is at rest after the last knot and before a first
+    one after time 0; one that begins at time 0 or earlier is under way.
     """
 
     def __init__(self, time: Array, value: Array) -> None:
-        self._first, self._last, self._value = time[0], time[-1], float(value[0])
-        self._curve = CubicSpline(time, value, bc_type="clamped") if len(time) > 1 else None
+        self._first, self._last, self._value = float(time[0]), float(time[-1]), float(value[0])
+        self._curve, self._slope = None, 0.0
+        if len(time) > 1:
+            under_way = self._first <= 0.0
+            self._curve = CubicSpline(
+                time, value, bc_type=((2 if under_way else 1, 0.0), (1, 0.0))
+            )  # the order of the derivative that vanishes
+            self._slope = float(self._curve(self._first, 1))
 
     def __call__(self, time: float) -> float:
-        if self._curve is None:
-            return self._value
-        return float(self._curve(min(max(time, self._first), self._last)))
+        if time < self._first or self._curve is None:
+            return self._value + self._slope * (time - self._first)
+        return float(self._curve(min(time, self._last)))
 
 
 class BasePath:

@@ -17,6 +17,7 @@ from galerna.aero.bem.steady import SteadyRotor
 from galerna.case import LoadedCase
 from galerna.contract import Array
 from galerna.control.options import BaselineOptions
+from galerna.coupling.controllers import with_gains
 from galerna.coupling.equilibrium import SteadyMachine
 from galerna.coupling.flexible import FlexibleMachine
 from galerna.coupling.operating_point import (
@@ -33,6 +34,7 @@ from galerna.kinematics import PrescribedOperation
 from galerna.signals import Signal
 from galerna.structure import TurbineOptions, with_initial_accelerations
 from galerna.structure.frames import log_se3
+from galerna.structure.initial import with_fitting_velocities
 from galerna.structure.system import State
 from galerna.turbine.model import Turbine
 from galerna.units import DEG
@@ -51,7 +53,8 @@ class Trim:
     def __init__(
         self, case: LoadedCase, turbine: Turbine, wind: WindField, describe: Describe
     ) -> None:
-        self._settings, self._turbine, self._describe = case.case, turbine, describe
+        self._case, self._turbine, self._describe = case, turbine, describe
+        self._settings = case.case
         self._wind = wind.without_turbulence().held_everywhere()
         self._machine: SteadyMachine | None = None
         self._point: OperatingPoint | None = None
@@ -96,6 +99,7 @@ class Trim:
             rotation=now.rotation,
             velocity=_rate(before, after, 2.0 * step),
         )
+        first = with_fitting_velocities(machine.system, first)
         machine.start(with_initial_accelerations(machine.system, first, steady.forces()))
         return torque
 
@@ -112,8 +116,9 @@ class Trim:
         if not isinstance(control, BaselineOptions):
             return general_strategy(self._turbine, wind_speed)
         fine = control.fine_pitch_deg
+        turbine = with_gains(self._case, self._turbine)
         return baseline_strategy(
-            self._turbine, wind_speed, control.above_rated, None if fine is None else fine * DEG
+            turbine, wind_speed, control.above_rated, None if fine is None else fine * DEG
         )
 
     def _aerodynamics(self) -> BemOptions | None:

@@ -46,6 +46,26 @@ def with_initial_accelerations(system: System, state: State, forces: Forces | No
     return rest
 
 
+def with_fitting_velocities(system: System, state: State) -> State:
+    """The state with the nearest velocities that joints which hold positions permit.
+
+    What is added has the least kinetic energy.
+    """
+    n = len(system)
+    balance = system.balance(state, Forces.none(n), system.still(), np.tile(np.eye(6), (n, 1, 1)))
+    rates, _ = _along_the_flow(system, state, 1e-4)
+    balance.nodes, balance.residual = system.mass.copy(), np.zeros((n, 6))
+    balance.pairs.tangent[:] = 0.0
+    balance.pairs.motion[:] = rates[: len(system.pairs.ends)]
+    if balance.rows is not None:
+        values, kept = rates[len(system.pairs.ends) :, 0], balance.rows
+        balance.rows = replace(
+            kept, residual=values, jacobian=kept.direction, tangent=0.0 * kept.tangent
+        )
+    change, _, _ = system.solve(balance, system.mass_scale)
+    return replace(state, velocity=state.velocity + change)
+
+
 def velocity_violation(system: System, state: State) -> float:
     """Largest rate m/s or rad/s at which the state leaves its constraints."""
     rates, _ = _along_the_flow(system, state, 1e-4)

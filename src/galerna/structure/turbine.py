@@ -22,7 +22,7 @@ from .assembly import GROUND, Structure
 from .beam import Beam, Curve, discretise
 from .bodies import moved, rigid_body
 from .frames import rotation_about
-from .joints import Angle, Path, hinge, on_path, turning
+from .joints import ALL, Angle, Joint, Path, hinge, turning
 from .modes import natural_modes
 from .pairs import Integers
 from .system import System
@@ -39,8 +39,9 @@ class TurbineOptions:
     ``blade_elements`` and ``tower_elements`` 0 make the part rigid. ``rotor`` is "free"
     (a torque drives it), "locked", or a speed rad/s as a function of time; ``pitch`` rad and
     ``azimuth`` rad are the first shape's. ``rotor_motion``, ``pitch_motion`` and ``yaw_motion``
-    rad turn rotor, blades and nacelle on from there as functions of time. ``base_motion`` moves
-    the tower's foot or the platform, which is free without it; a foot stands still. Without
+    rad turn rotor, blades and nacelle on from there as functions of time. ``base_motion`` says
+    where the tower's foot or the platform's reference point is, (3,) m, and how it is turned,
+    (3,3); without it a platform is free and a foot stands still. Without
     ``flexible_shaft`` hub and generator are one.
     """
 
@@ -123,7 +124,7 @@ class _Builder:
                 foot = self.turbine.tower.axis[0]
                 body = rigid_body(FOOT_MASS, None, FOOT_MASS * np.ones(3))
                 self.base = self.structure.frame("foot", foot, mass=body)
-                self.structure.join(on_path("base", self.base, path))
+                self.structure.join(_moved_base(self.base, foot, path))
             return
         center = np.subtract(platform.center_of_mass, platform.reference_point)
         body = rigid_body(platform.mass, center, np.array(platform.inertia))
@@ -131,7 +132,7 @@ class _Builder:
         place = np.array(platform.reference_point)
         self._note("platform", ["platform"], np.zeros(1), place, np.eye(3))
         if path is not None:
-            self.structure.join(on_path("base", self.base, path))
+            self.structure.join(_moved_base(self.base, place, path))
 
     def _tower(self) -> None:
         tower = self.turbine.tower
@@ -310,6 +311,16 @@ def damping_of(beam: Beam, ratio: float) -> Array:
     order = np.argsort(tip[:, 1] / (tip[:, 0] + tip[:, 1]))
     flap, edge = ratio / (np.pi * modes.frequency[order])
     return np.array([flap, edge, flap, edge, flap, flap])
+
+
+def _moved_base(frame: str, place: Array, path: Path) -> Joint:
+    """A frame that was described at ``place`` (3,) m, unturned, and follows a path."""
+
+    def travelled(time: float) -> tuple[Array, Array]:
+        x, R = path(time)
+        return x - place, R
+
+    return Joint("base", GROUND, frame, place, np.eye(3), ALL, placement=travelled)
 
 
 def _still(time: float) -> float:
