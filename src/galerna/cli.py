@@ -159,11 +159,47 @@ def power_curve(
     plot: Annotated[Path | None, typer.Option(help="Draw the curve into this PNG.")] = None,
     csv: Annotated[Path | None, typer.Option(help="Write the curve into this file.")] = None,
     step: Annotated[float, typer.Option(min=0.01, help="Between wind speeds, m/s.")] = 1.0,
+    flexible: Annotated[
+        bool, typer.Option("--flexible", help="Let the blades bend and twist.")
+    ] = False,
 ) -> None:
     """Compute the steady power and thrust over the wind speed."""
     from galerna import commands
 
-    commands.power_curve(turbine, plot, csv, step)
+    commands.power_curve(turbine, plot, csv, step, flexible)
+
+
+@app.command(epilog=example("galerna tune nrel5mw --flexible --output gains.yaml"))
+def tune(
+    turbine: TurbineArgument,
+    frequency: Annotated[
+        float | None,
+        typer.Option(help="Natural frequency, rad/s; 0.6, or 0.2 for a turbine that floats."),
+    ] = None,
+    damping: Annotated[float, typer.Option(help="Damping ratio.")] = 0.7,
+    constant_torque: Annotated[
+        bool, typer.Option("--constant-torque", help="Torque, not power, is held above rated.")
+    ] = False,
+    flexible: Annotated[
+        bool, typer.Option("--flexible", help="Let the blades bend and twist.")
+    ] = False,
+    floating: Annotated[
+        bool | None,
+        typer.Option("--floating/--fixed", help="By default, as the turbine has a platform."),
+    ] = None,
+    following_wake: Annotated[
+        bool, typer.Option("--following-wake", help="Let the wake follow the pitch at once.")
+    ] = False,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="Store the gains in this YAML file.")
+    ] = None,
+) -> None:
+    """Compute the gains of the pitch controller from the rotor's sensitivity to pitch."""
+    from galerna import commands
+    from galerna.coupling.tune import TuneSettings
+
+    settings = TuneSettings(frequency, damping, constant_torque, flexible, floating, following_wake)
+    commands.tune(turbine, settings, output)
 
 
 @app.command(epilog=example("galerna wind turbulent --bts box.bts --plot wind.png"))

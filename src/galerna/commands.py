@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
     from galerna.case import Case, LoadedCase
     from galerna.checkpoints import Checkpoint
+    from galerna.coupling.tune import TuneSettings
     from galerna.inflow.field import WindField
     from galerna.inflow.options import InflowOptions
     from galerna.machine import Machine
@@ -217,21 +218,43 @@ def show_turbine(name: str) -> None:
         print(f"note: {note}")
 
 
-def power_curve(name: str, plot: Path | None, csv: Path | None, step: float) -> None:
+def tune(name: str, settings: TuneSettings, output: Path | None) -> None:
+    """Gains of a turbine as a table, and as a file for its controller."""
+    from galerna import turbine as turbines
+    from galerna.compiling import announced
+    from galerna.coupling.gains_file import write_gains
+    from galerna.coupling.tune import tuned
+
+    with announced():
+        tuning = tuned(turbines.load(name), settings)
+    tables.print_gains(tuning)
+    if output is not None:
+        write_gains(tuning, output)
+        print(f"gains: {output}; a case reads them with control: {{gains: {output.name}}}")
+
+
+def power_curve(
+    name: str, plot: Path | None, csv: Path | None, step: float, flexible: bool = False
+) -> None:
     """The steady operating curve as a table, a picture, a file."""
     import numpy as np
 
     from galerna import turbine as turbines
     from galerna.aero.bem import steady
     from galerna.compiling import announced
+    from galerna.coupling.steady import steady_flexible
     from galerna.report import power_curve_figure
     from galerna.report.style import save
 
     turbine = turbines.load(name)
     control = turbine.control
     last = control.cut_out_wind_speed + 1e-9
+    winds = np.arange(control.cut_in_wind_speed, last, step)
     with announced():
-        curve = steady.power_curve(turbine, np.arange(control.cut_in_wind_speed, last, step))
+        if flexible:
+            curve = steady_flexible(turbine, winds).drop_dims("radius")
+        else:
+            curve = steady.power_curve(turbine, winds)
     tables.print_curve(turbine.name, curve)
     if plot is not None:
         print(f"picture: {save(power_curve_figure(curve, turbine.name), plot)}")

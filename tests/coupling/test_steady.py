@@ -6,6 +6,7 @@ import pytest
 
 from galerna import turbine as turbines
 from galerna.aero.bem.steady import steady_rotor
+from galerna.cli import main
 from galerna.coupling.gains import power_sensitivity
 from galerna.coupling.steady import FlexibleRotor, steady_flexible, stiffened
 from galerna.errors import InputError
@@ -72,3 +73,14 @@ def test_refuses_what_cannot_be() -> None:
         steady_flexible(NREL, [0.0])
     torsional = [t.blade.structure.stiffness[:, 5, 5] for t in (stiffened(NREL, 4.0), NREL)]
     assert torsional[0] == pytest.approx(4.0 * torsional[1])
+
+
+def test_power_curve_is_printed_with_the_bending(tmp_path, capsys) -> None:
+    file = tmp_path / "curve.csv"
+    with pytest.raises(SystemExit) as ended:
+        main(["power-curve", "nrel5mw", "--flexible", "--step", "11", "--csv", str(file)])
+    assert not ended.value.code
+    assert "tip twist [deg]" in capsys.readouterr().out
+    header, *rows = file.read_text().splitlines()
+    assert "tip_out_of_plane [m]" in header
+    assert len(rows) == 3

@@ -21,6 +21,7 @@ from galerna.control.options import (
 )
 from galerna.control.python_controller import python_controller
 from galerna.control.yawing import YawSettings
+from galerna.coupling.gains_file import with_stored_gains
 from galerna.coupling.strategy import completed, root_moment_by_pitch
 from galerna.errors import InputError
 from galerna.turbine.model import Turbine
@@ -29,8 +30,10 @@ from galerna.units import DEG
 INDIVIDUAL_PITCH_TIME = 5.0  #: s, in which individual pitch control takes the moments away
 
 
-def controller(case: LoadedCase, turbine: Turbine) -> Controller:
-    """The controller that a case describes."""
+def controller(
+    case: LoadedCase, turbine: Turbine, from_outside: Controller | None = None
+) -> Controller:
+    """The controller that a case describes, or for an external one that which is given."""
     options = case.case.control
     assert options is not None
     if isinstance(options, DisconOptions):
@@ -38,8 +41,17 @@ def controller(case: LoadedCase, turbine: Turbine) -> Controller:
     if isinstance(options, PythonOptions):
         return python_controller(options.object, turbine, case.folder)
     if isinstance(options, BaselineOptions):
-        return baseline(options, turbine)
-    return ExternalController()
+        return baseline(options, with_gains(case, turbine))
+    return from_outside or ExternalController()
+
+
+def with_gains(case: LoadedCase, turbine: Turbine) -> Turbine:
+    """The turbine with the gains of the file that its case names, or with its own."""
+    options = case.case.control
+    if not isinstance(options, BaselineOptions) or options.gains is None:
+        return turbine
+    with case.blame("control", "gains"):
+        return with_stored_gains(turbine, case.folder / options.gains)
 
 
 def baseline(options: BaselineOptions, turbine: Turbine) -> BaselineController:
@@ -78,6 +90,7 @@ def _individual_pitch(options: IndividualPitchOptions, turbine: Turbine) -> Indi
         proportional=options.proportional_gain_deg_per_MN_m * per_meganewton,
         azimuth_offset=options.azimuth_offset_deg * DEG,
         amplitude=options.amplitude_deg * DEG,
+        corner=turbine.control.rated_rotor_speed,
         below_rated=options.below_rated,
     )
 

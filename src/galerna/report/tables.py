@@ -12,13 +12,14 @@ from rich.markup import escape
 from rich.table import Table
 
 from galerna.channel_names import openfast_names
-from galerna.report.rotor import ROTOR_CHANNELS
+from galerna.report.rotor import main_channels
 from galerna.report.style import shown
 
 if TYPE_CHECKING:
     import xarray
 
     from galerna.contract import Array, Channel
+    from galerna.coupling.gains import Tuning
     from galerna.turbine.summary import Row
 
 
@@ -43,7 +44,7 @@ def statistics(dataset: xarray.Dataset) -> Table:
     """Mean, standard deviation and extremes of the main channels; of blades, over all blades."""
     name = dataset.attrs.get("case_name", "result")
     made = table(name, "quantity", "unit", "mean", "std", "min", "max", numbers_from=2)
-    for channel in ROTOR_CHANNELS:
+    for channel in main_channels(dataset):
         if channel not in dataset:
             continue
         values, unit = shown(dataset[channel])
@@ -81,7 +82,8 @@ def print_channels(channels: Iterable[Channel], coordinates: Mapping[str, Array]
 
 def print_curve(name: str, curve: xarray.Dataset) -> None:
     """The table of a steady operating curve."""
-    columns = ("rotor_speed", "pitch", "power", "electrical_power", "thrust")
+    bent = [name for name in ("tip_out_of_plane", "tip_twist") if name in curve]
+    columns = ("rotor_speed", "pitch", "power", "electrical_power", "thrust", *bent)
     coefficients = ("power_coefficient", "thrust_coefficient")
     values = [shown(curve[column]) for column in columns]
     headings = [f"{c.replace('_', ' ')} [{u}]" for c, (_, u) in zip(columns, values, strict=True)]
@@ -91,6 +93,27 @@ def print_curve(name: str, curve: xarray.Dataset) -> None:
         for i, wind in enumerate(curve["wind_speed"].values)
     )
     print_rows(name, ("wind speed [m/s]", *headings, "C_P", "C_T"), rows, numbers_from=0)
+
+
+def print_gains(tuning: Tuning) -> None:
+    """The table of gains with what they were computed from and the loop that they close."""
+    sensitivity, gains = tuning.sensitivity, tuning.gains
+    columns = (
+        sensitivity.wind_speed,
+        np.degrees(sensitivity.pitch),
+        sensitivity.power_by_pitch / 1e6,
+        gains.proportional,
+        gains.integral,
+        *tuning.closed_loop(),
+    )
+    headings = (
+        "wind speed [m/s]", "pitch [deg]", "dP/dpitch [MW/rad]", "K_P [s]", "K_I [-]",
+        "frequency [rad/s]", "damping [-]",
+    )  # fmt: skip
+    rows = ([f"{column[i]:.4g}" for column in columns] for i in range(len(gains.pitch)))
+    print_rows(tuning.turbine, headings, rows, numbers_from=0)
+    print(f"inertia at the rotor: {tuning.inertia:.4g} kg m2")
+    print(f"optimal-mode gain: {tuning.optimal_mode_gain:.6g} N m s2 at the generator")
 
 
 def print_figures(name: str, figures: Iterable[Row]) -> None:
