@@ -22,6 +22,9 @@ MODULES = (
     "lattice_rotors",
     "lattice_yaw",
     "lattice_turbulence",
+    "machine_land",
+    "machine_base_motion",
+    "machine_operation",
     "machine_energy",
 )
 

@@ -23,8 +23,9 @@ BOX_STEPS = (0.1, 0.2, 0.2)  #: m/s between the numbers of the box's u, v and w
 BOX_SHAPE = (3, 820, 28, 28)
 BOX_SPACING = (4.5, 160.0 / 31.0, 160.0 / 31.0)  #: m
 
-#: OpenFAST's name of a channel: galerna's, and what turns its SI value into OpenFAST's unit
-Reference = dict[str, tuple[float, float]]
+#: Mean, standard deviation and that of what repeats every turn, by OpenFAST's name of a channel
+Reference = dict[str, tuple[float, float, float]]
+HARMONICS = (1, 2, 3)  #: of the azimuth, in what repeats every turn
 
 
 def simulate(**blocks: Any) -> xarray.Dataset:
@@ -49,12 +50,23 @@ def in_openfast_units(result: xarray.Dataset, name: str) -> Array:
 
 
 def openfast_land(code: str, case: str) -> Reference:
-    """Mean and standard deviation by channel: ``code`` is ``ed`` or ``bd``."""
+    """OpenFAST's figures of a case: ``code`` is ``ed`` or ``bd``."""
     return {
-        row["channel"]: (float(row["mean"]), float(row["std"]))
+        row["channel"]: (float(row["mean"]), float(row["std"]), float(row["periodic"] or np.nan))
         for row in table("machine/openfast_land.csv")
         if (row["code"], row["case"]) == (code, case)
     }
+
+
+def over_whole_turns(values: Array, azimuth: Array) -> tuple[float, float]:
+    """Mean, and the standard deviation of what repeats every turn, of a channel at azimuths rad.
+
+    Both of a least-squares fit of the azimuth's first harmonics: no part of a turn counts twice.
+    """
+    columns = [f(n * azimuth) for n in HARMONICS for f in (np.cos, np.sin)]
+    design = np.column_stack([np.ones(len(azimuth)), *columns])
+    fitted = np.linalg.lstsq(design, values, rcond=None)[0]
+    return float(fitted[0]), float(np.sqrt(0.5 * np.sum(fitted[1:] ** 2)))
 
 
 def write_wind_of_openfast(folder: Path) -> Path:

@@ -16,6 +16,7 @@ from .machine import (
     in_openfast_units,
     late,
     openfast_land,
+    over_whole_turns,
     rosco_input,
     simulate,
     write_wind_of_openfast,
@@ -57,11 +58,11 @@ DEFLECTIONS: tuple[RotorQuantity, ...] = (
     ("TTDspFA", "TTDspFA", "fore-aft deflection of the tower top", "m"),
 )
 
-#: Standard deviations that are not transients dying out: gravity and tilt over a turn
-STEADY_DEVIATIONS = {"RootMxc1", "RootMyc1"}
+#: Loads that weight and tilt change every turn
+TURNING = LOADS[:2]
 
 
-def on_land(wind: dict[str, Any], duration: float) -> xarray.Dataset:
+def on_land(wind: dict[str, Any], duration: float, **blocks: Any) -> xarray.Dataset:
     """The turbine of the OpenFAST runs in a wind, for ``duration`` s."""
     controller = {"model": "discon", "library": "rosco", "input_file": str(rosco_input())}
     return simulate(
@@ -72,30 +73,42 @@ def on_land(wind: dict[str, Any], duration: float) -> xarray.Dataset:
         structure="flexible",
         control=controller,
         outputs={"interval_s": 0.1},
+        **blocks,
     )
 
 
 def steady(wind_speed: float) -> Iterator[Check]:
-    """Means, and the deviations that gravity makes, in uniform wind."""
+    """Means, and what weight and tilt change every turn, in uniform wind."""
     result = late(on_land({"wind_speed_m_s": wind_speed}, STEADY), SETTLED)
+    azimuth = result["azimuth"].to_numpy()
     for source, code in ((BEAMDYN, "bd"), (ELASTODYN, "ed")):
         reference = openfast_land(code, f"{wind_speed:g}")
         for quantity in (*OPERATION, *LOADS, *DEFLECTIONS):
-            yield from _means(result, reference, quantity, source, code == "bd")
-        for quantity in LOADS:
-            judged = code == "bd" and quantity[1] in STEADY_DEVIATIONS
-            yield _deviation(result, reference, quantity, source, judged)
+            here, there, text, unit = quantity
+            mean, _, periodic = reference[there]
+            values = in_openfast_units(result, here)
+            own_mean, own_periodic = over_whole_turns(values, azimuth)
+            judged = code == "bd" and quantity not in DEFLECTIONS
+            yield Check(f"mean {text}", own_mean, mean, source, MEAN if judged else None, unit,
+                        relative=mean != 0.0)  # fmt: skip
+            if quantity in TURNING:
+                yield Check(f"standard deviation over a turn of {text}", own_periodic, periodic,
+                            source, DEVIATION if judged else None, unit, relative=True)  # fmt: skip
 
 
 @cache
 def turbulent_run() -> xarray.Dataset:
-    """The turbine in the box of the OpenFAST runs, from 60 to 200 s."""
+    """The turbine in the box of the OpenFAST runs, started as they were, from 60 to 200 s."""
     with TemporaryDirectory() as folder:
         path = write_wind_of_openfast(Path(folder))
-        wind = {
-            "turbulence": {"kind": "file", "path": str(path), "below_box": "hold", "margin_m": 6.0}
-        }
-        return late(on_land(wind, TURBULENT[1]), *TURBULENT)
+        box = {"kind": "file", "path": str(path), "below_box": "hold", "margin_m": 6.0}
+        result = on_land(
+            {"turbulence": box},
+            TURBULENT[1],
+            tower_and_nacelle_drag=False,
+            operation={"rotor_speed_rpm": 12.1, "pitch_deg": 0.0},
+        )
+    return late(result, *TURBULENT)
 
 
 def turbulent() -> Iterator[Check]:
@@ -104,39 +117,15 @@ def turbulent() -> Iterator[Check]:
     for source, code in ((BEAMDYN, "bd"), (ELASTODYN, "ed")):
         reference = openfast_land(code, "turbulent")
         for quantity in (*OPERATION, *LOADS, *DEFLECTIONS):
-            yield from _means(result, reference, quantity, source, code == "bd")
+            here, there, text, unit = quantity
+            mean, deviation, _ = reference[there]
+            values = in_openfast_units(result, here)
             judged = code == "bd" and quantity not in DEFLECTIONS
-            yield _deviation(result, reference, quantity, source, judged)
+            yield Check(f"mean {text}", float(values.mean()), mean, source,
+                        MEAN if judged else None, unit, relative=True)  # fmt: skip
+            yield Check(f"standard deviation of {text}", float(values.std()), deviation, source,
+                        DEVIATION if judged else None, unit, relative=True)  # fmt: skip
         yield from _correlations(result, code, source)
-
-
-def _means(
-    result: xarray.Dataset,
-    reference: dict[str, tuple[float, float]],
-    quantity: RotorQuantity,
-    source: str,
-    judged: bool,
-) -> Iterator[Check]:
-    here, there, text, unit = quantity
-    mean, _ = reference[there]
-    value = float(in_openfast_units(result, here).mean())
-    tolerance = MEAN if judged and quantity not in DEFLECTIONS else None
-    yield Check(f"mean {text}", value, mean, source, tolerance, unit, relative=mean != 0.0)
-
-
-def _deviation(
-    result: xarray.Dataset,
-    reference: dict[str, tuple[float, float]],
-    quantity: RotorQuantity,
-    source: str,
-    judged: bool,
-) -> Check:
-    here, there, text, unit = quantity
-    value = float(in_openfast_units(result, here).std())
-    tolerance = DEVIATION if judged else None
-    deviation = reference[there][1]
-    return Check(f"standard deviation of {text}", value, deviation, source, tolerance, unit,
-                 relative=True)  # fmt: skip
 
 
 def _correlations(result: xarray.Dataset, code: str, source: str) -> Iterator[Check]:
@@ -151,22 +140,33 @@ def _correlations(result: xarray.Dataset, code: str, source: str) -> Iterator[Ch
 
 
 STORY = """
-Structure flexible, quasi-steady sections that read their angle of attack at the aerodynamic
-centre, no tower influence, drag of the tower, as in the deck of the reference; ROSCO and its input
-are those of its wheel. Step 0.02 s, the reference 0.01 s. Judged against BeamDyn, which
-twists; ElastoDyn's modes do not, so it needs 0.85 deg more pitch at 18 m/s. BeamDyn at order 5 is
-3.6 % too stiff under a tip load of 50 kN. Its root moments are turned into coned axes by the
-pitch. In steady wind the tower's deviations are transients dying out: shown.
+Flexible, quasi-steady sections that read their angle of attack at the aerodynamic centre, no tower
+influence, as in the deck of the reference; ROSCO and its input are those of its wheel. Step 0.02 s,
+the reference's 0.01 s. Judged against BeamDyn, which twists; ElastoDyn's modes do not and need
+0.85 deg more pitch at 18 m/s. What is known of the reference: BeamDyn at order 5 is 3.6 % too stiff
+under a tip load of 50 kN, and its blades lack the report's mass factor of 1.045, which shows in the
+weight's part of the in-plane moment. At high pitch galerna's rotor has up to 3 % more thrust at the
+same power with rigid blades already (bem-nrel5mw-steady). The tower bends about 5 % more than by
+ElastoDyn's prescribed shapes.
+"""
+OF_STEADY = """
+Drag of the tower, as the reference's shear at the tower's base shows. Means and deviations over
+turns are those of the first three harmonics of the azimuth, in both, since what else varies is the
+start dying out.
+"""
+OF_TURBULENCE = """
+The wind is the reference's own TurbSim box, cut to 205 s and the rotor's 28 x 28 points and rounded
+to 0.1 m/s in u and 0.2 m/s in v and w; from 60 to 200 s. No drag of the tower here: the reference's
+shear at the tower's base shows none in this wind. Started like the reference at 12.1 rpm and no
+pitch, which at 18 m/s sets the tower ringing sideways; that takes some 80 s to fall to a third.
 """
 
 CASES = (
     *(
         Case(f"machine-land-{wind}", "machine", f"NREL 5 MW with ROSCO in steady {wind} m/s",
-             partial(steady, float(wind)), 40, STORY)
+             partial(steady, float(wind)), 30, STORY + OF_STEADY)
         for wind in (8, 12, 18)
     ),
     Case("machine-land-turbulent", "machine", "NREL 5 MW with ROSCO in the same turbulence",
-         turbulent, 90,
-         STORY + "The wind is the reference's own TurbSim box, cut to 205 s and the rotor's 28 x "
-         "28 points and rounded to 0.1 m/s in u and 0.2 m/s in v and w, from 60 to 200 s."),
+         turbulent, 70, STORY + OF_TURBULENCE),
 )  # fmt: skip
