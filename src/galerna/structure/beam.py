@@ -13,7 +13,7 @@ the residual bending flexibility that the compliance contains.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -102,9 +102,14 @@ def discretise(
                 name, f"no rotary inertia at span {span[i]:.3g}",
                 "give every section moments of inertia, small ones if need be",
             )  # fmt: skip
-    root = np.sqrt(sections.damping)
-    damping = root[:, None] * stiffness * root
-    return Beam(span, x, R, mass, reference, stiffness, damping)
+    beam = Beam(span, x, R, mass, reference, stiffness, np.zeros_like(stiffness))
+    return damped(beam, sections.damping)
+
+
+def damped(beam: Beam, damping: Array) -> Beam:
+    """The beam with a damping (6,) s in proportion to its stiffness."""
+    root = np.sqrt(damping)
+    return replace(beam, damping=root[:, None] * beam.stiffness * root)
 
 
 def _close(M: Array, lever: Array, spread: Array) -> None:
@@ -201,7 +206,8 @@ def _end_masses(
         off = at - (xa + f[:, None] * chord)
         M, first, spread = np.zeros((6, 6)), np.zeros(3), np.zeros((3, 3))
         for i in range(len(ds)):
-            turn = np.kron(np.eye(2), R.T @ axes[i])
+            turn = np.zeros((6, 6))
+            turn[:3, :3] = turn[3:, 3:] = R.T @ axes[i]
             local = turn @ density[i] @ turn.T
             lever = R.T @ (slope[i] * chord + value[i] * off[i])
             E = np.zeros((6, 6))

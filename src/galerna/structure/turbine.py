@@ -19,7 +19,7 @@ from galerna.turbine.geometry import axis_positions, axis_tangents, section_rota
 from galerna.turbine.model import SectionProperties, Turbine
 
 from .assembly import GROUND, Structure
-from .beam import Beam, Curve, discretise
+from .beam import Beam, Curve, damped, discretise
 from .bodies import moved, rigid_body
 from .frames import rotation_about
 from .joints import ALL, Angle, Joint, Path, hinge, turning
@@ -97,6 +97,7 @@ class _Builder:
     parts: dict[str, list[str]] = field(default_factory=dict)
     span: dict[str, Array] = field(default_factory=dict)
     places: dict[str, tuple[Array, Array]] = field(default_factory=dict)
+    damping: dict[str, Array] = field(default_factory=dict)  # all blades have the same
 
     def build(self) -> TurbineSystem:
         self.structure = Structure(self.options.gravity)
@@ -259,8 +260,10 @@ class _Builder:
         beam = discretise(curve, length, sections, span, name)
         if sections.damping_ratio is None or n == 0:
             return beam
-        loss = damping_of(beam, sections.damping_ratio)
-        return discretise(curve, length, replace(sections, damping=loss), span, name)
+        kind = name.rstrip("0123456789")
+        if kind not in self.damping:
+            self.damping[kind] = damping_of(beam, sections.damping_ratio)
+        return damped(beam, self.damping[kind])
 
     def _lump(self, frame: str, beam: Beam) -> None:
         """All of a beam's mass on one frame."""

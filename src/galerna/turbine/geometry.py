@@ -15,9 +15,7 @@ def axis_positions(axis_span: Array, axis: Array, span: Array) -> Array:
 
 def axis_tangents(axis_span: Array, axis: Array, span: Array) -> Array:
     """Unit tangents (n,3) of a reference axis at the fractions ``span`` (n,)."""
-    slope = np.stack(
-        [PchipInterpolator(axis_span, axis[:, i]).derivative()(span) for i in range(3)], axis=1
-    )
+    slope = PchipInterpolator(axis_span, axis).derivative()(span)
     return slope / np.linalg.norm(slope, axis=1, keepdims=True)
 
 
