@@ -136,6 +136,7 @@ def serve(library: Library, setup: dict[str, Any], pipes: Pipes, watch: Watch) -
 def main(text: str) -> None:
     """Load the library that the setup names, say how that went, and serve."""
     setup = json.loads(text)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # the simulation closes the pipe, in order
     pipes = Pipes(setup["log"])
     if hasattr(signal, "alarm"):  # loading may run code of the library, and holds the interpreter
         signal.setitimer(signal.ITIMER_REAL, setup["timeout"])

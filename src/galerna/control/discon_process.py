@@ -143,7 +143,7 @@ class LibraryProcess:
             stdout=subprocess.PIPE,
             bufsize=0,
             cwd=setup.folder,
-            start_new_session=True,  # Ctrl-C is for the simulation, which then closes in order
+            start_new_session=True,  # what ends a group of processes leaves time for the last call
         )
         assert process.stdin is not None
         assert process.stdout is not None
