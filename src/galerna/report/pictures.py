@@ -8,7 +8,13 @@ from typing import TYPE_CHECKING
 
 from galerna.errors import InputError, did_you_mean
 from galerna.report.inflow import RotorCircle, inflow_figure
-from galerna.report.rotor import rotor_figure
+from galerna.report.rotor import (
+    MACHINE_CHANNELS,
+    ROTOR_CHANNELS,
+    machine_figure,
+    main_channels,
+    rotor_figure,
+)
 from galerna.report.spanwise import spanwise_figure
 from galerna.report.spectra import FEWEST_RECORDS, spectra_figure, varying
 from galerna.report.style import save
@@ -45,7 +51,10 @@ def plot_result(
 def _usual(
     dataset: xarray.Dataset, wind: Inflow | None
 ) -> Iterator[tuple[str, Callable[[], Figure]]]:
-    yield "rotor", lambda: rotor_figure(dataset)
+    if main_channels(dataset) is MACHINE_CHANNELS:
+        yield "machine", lambda: machine_figure(dataset)
+    if any(name in dataset for name in ROTOR_CHANNELS):
+        yield "rotor", lambda: rotor_figure(dataset)
     if "radius" in dataset.dims:
         yield "spanwise", lambda: spanwise_figure(dataset)
     if dataset.sizes["time"] >= FEWEST_RECORDS and varying(dataset):

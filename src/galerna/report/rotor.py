@@ -1,4 +1,4 @@
-"""Rotor quantities over time."""
+"""Rotor and machine over time."""
 
 from __future__ import annotations
 
@@ -30,9 +30,37 @@ ROTOR_CHANNELS = (
     "aerodynamic_root_out_of_plane_moment",
     "aerodynamic_root_in_plane_moment",
 )
+#: the same of a machine that moves
+MACHINE_CHANNELS = (
+    "wind_speed",
+    "rotor_speed",
+    "pitch",
+    "electrical_power",
+    "shaft_thrust",
+    "blade_root_out_of_plane_moment",
+    "blade_root_in_plane_moment",
+    "tip_out_of_plane_displacement",
+    "tower_top_fore_aft_displacement",
+    "tower_base_fore_aft_moment",
+)
 
 
-def rotor_figure(dataset: xarray.Dataset, channels: tuple[str, ...] = ROTOR_CHANNELS) -> Figure:
+def main_channels(dataset: xarray.Dataset) -> tuple[str, ...]:
+    """What is shown first of a result: of the machine where it moves, of the rotor else."""
+    moves = "blade_root_out_of_plane_moment" in dataset or "electrical_power" in dataset
+    return MACHINE_CHANNELS if moves else ROTOR_CHANNELS
+
+
+def machine_figure(dataset: xarray.Dataset) -> Figure:
+    """Operation, loads and displacements over time; see ``rotor_figure``."""
+    return rotor_figure(dataset, MACHINE_CHANNELS, "Machine over time")
+
+
+def rotor_figure(
+    dataset: xarray.Dataset,
+    channels: tuple[str, ...] = ROTOR_CHANNELS,
+    what: str = "Rotor over time",
+) -> Figure:
     """Panels of channels over time, one below the other; blades share a panel.
 
     What does not change is told in the title. Raises InputError if the result has none
@@ -49,7 +77,7 @@ def rotor_figure(dataset: xarray.Dataset, channels: tuple[str, ...] = ROTOR_CHAN
             _draw(ax, dataset[name])
         axes[-1, 0].set_xlabel("Time [s]")
         fixed = [_figure_of(dataset[name]) for name in constant if name not in names]
-        figure.suptitle("\n".join([title_of(dataset, "Rotor over time"), ", ".join(fixed)]).strip())
+        figure.suptitle("\n".join([title_of(dataset, what), ", ".join(fixed)]).strip())
     return figure
 
 

@@ -30,6 +30,8 @@ SPECTRA_CHANNELS = (
     "rotor_thrust",
     "rotor_power",
     "aerodynamic_root_out_of_plane_moment",
+    "blade_root_out_of_plane_moment",
+    "tower_base_fore_aft_moment",
 )
 FEWEST_RECORDS = 32
 TURNS = 5  #: of the rotor in a segment, for 1P to stand clear of the lowest frequencies
