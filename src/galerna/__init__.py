@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from galerna.machine import build_machine
     from galerna.results import open_result, to_csv, to_outb
     from galerna.running import resume, run
+    from galerna.session import start
     from galerna.turbine import Turbine
     from galerna.turbine import load as load_turbine
     from galerna.turbine import names as turbine_names
@@ -44,6 +45,7 @@ __all__ = [
     "power_curve",
     "resume",
     "run",
+    "start",
     "steady_rotor",
     "to_csv",
     "to_outb",
@@ -66,6 +68,7 @@ _HOMES = {
     "power_curve": ("galerna.aero.bem.steady", "power_curve"),
     "resume": ("galerna.running", "resume"),
     "run": ("galerna.running", "run"),
+    "start": ("galerna.session", "start"),
     "steady_rotor": ("galerna.aero.bem.steady", "steady_rotor"),
     "to_csv": ("galerna.results", "to_csv"),
     "to_outb": ("galerna.results", "to_outb"),

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 
     from galerna.aero.vortex.model import VortexLattice
     from galerna.aero.vortex.options import VortexLatticeOptions
+    from galerna.control.interface import Controller
     from galerna.coupling.trim import Trim
     from galerna.inflow.field import WindField
 
@@ -110,10 +111,11 @@ class Machine:
         yield from doubts.doubts(self.case.case, self.turbine, self.operation, self.wind.mean_speed)
 
 
-def build_machine(case: LoadedCase) -> Machine:
+def build_machine(case: LoadedCase, controller: Controller | None = None) -> Machine:
     """Everything that a run needs, wind included; nothing has moved yet.
 
-    Raises InputError with the line of the key that cannot be satisfied.
+    A ``controller`` made in Python commands a case with external control. Raises InputError with
+    the line of the key that cannot be satisfied.
     """
     settings = case.case
     with case.blame("turbine"):
@@ -135,7 +137,8 @@ def build_machine(case: LoadedCase) -> Machine:
             torque = trim.start(structure, operation)
         if settings.control is not None:
             with case.blame("control"):
-                commander = control_loop(case, turbine, structure, wind.field.hub_velocity)
+                hub_wind = wind.field.hub_velocity
+                commander = control_loop(case, turbine, structure, hub_wind, controller)
                 commander.torque = PowerTrain.of(turbine.drivetrain).generator_torque(torque)
     else:
         with case.blame("operation"):

@@ -26,7 +26,7 @@ from galerna.control.torque import AboveRated, TorqueCurve, torque_curve
 from galerna.control.yawing import YawControl, YawSettings
 from galerna.errors import InputError
 from galerna.turbine.model import Turbine
-from galerna.units import DEG, RPM
+from galerna.units import DEG
 
 FEATHER = 90.0 * DEG
 HOLD_RATED_PITCH = 1.0 * DEG  #: above the minimum, from where region 3 is fully held
@@ -39,11 +39,9 @@ PARKING_SPEED = 0.1  #: of the rated speed, from where down the brake parks the 
 CHANNELS = (
     Channel("control_mode", "1", "mode of the controller: 0 production, 1 start-up, 2 normal stop, "
             "3 emergency stop, 4 idling, 5 parked"),
-    Channel("filtered_generator_speed", "rad/s", "generator speed that the controller sees", (),
-            "GenSpeedF", "rpm", 1.0 / RPM),
-    Channel("pitch_integral", "rad", "integral part of the collective pitch", (), "", "deg",
-            1.0 / DEG),
-    Channel("minimum_pitch", "rad", "lowest pitch in production", (), "", "deg", 1.0 / DEG),
+    Channel("filtered_generator_speed", "rad/s", "generator speed that the controller sees"),
+    Channel("pitch_integral", "rad", "integral part of the collective pitch"),
+    Channel("minimum_pitch", "rad", "lowest pitch in production"),
 )  # fmt: skip
 
 
@@ -136,7 +134,8 @@ class BaselineController:
         if not first and self.mode != "emergency_stop":
             torque = limited(torque, self._torque, self._torque_rate, dt)
         self._torque = torque
-        self._brake = lagged(self._wanted_brake(measured), self._brake, BRAKE_TIME, dt)
+        grip = self._wanted_brake(measured)
+        self._brake = grip if first else lagged(grip, self._brake, BRAKE_TIME, dt)
         pitch = collective + self._each_blade(collective, measured, dt)
         return Demands(pitch, torque, self._yaw_rate(measured, dt), self._brake)
 

@@ -12,7 +12,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-STIFFNESS, DAMPING = 0.05, 0.4  #: times inertia / dt^2, and inertia / dt
+STIFFNESS, DAMPING = 0.25, 0.7  #: times inertia / dt^2, and inertia / dt
 
 
 class Brake:

@@ -3,13 +3,14 @@
 The out-of-plane root moments become a tilt and a yaw moment of the rotor by the Coleman (multi-
 blade) transform; integrators hold both at zero, and their angles go back to the blades (Bossanyi,
 Wind Energy 6, 2003). A shear or a yaw error, which each blade meets once per turn, is steady
-there.
+there; a low-pass filter keeps out what is fast.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from math import exp, inf
 
 import numpy as np
 
@@ -32,11 +33,12 @@ class IndividualPitchSettings:
     proportional: float = 0.0
     azimuth_offset: float = 0.0
     amplitude: float = 5.0 * DEG
+    corner: float = inf
     below_rated: bool = False
 
     def __post_init__(self) -> None:
-        if self.integral < 0.0 or self.proportional < 0.0 or self.amplitude <= 0.0:
-            what = "its gains cannot be negative, its amplitude must be positive"
+        if min(self.integral, self.proportional) < 0.0 or min(self.amplitude, self.corner) <= 0.0:
+            what = "its gains cannot be negative, its amplitude and corner must be positive"
             raise InputError("individual_pitch", what)
 
 
@@ -46,6 +48,7 @@ class IndividualPitch:
     def __init__(self, settings: IndividualPitchSettings) -> None:
         self.settings = settings
         self.integral = np.zeros(2)  #: rad, of tilt and yaw
+        self.moment = np.full(2, np.nan)  #: N m, of tilt and yaw, filtered
 
     def __call__(self, moment: Array, azimuth: float, above_minimum: float, dt: float) -> Array:
         """Angles (b,) rad for out-of-plane moments (b,) N m at an azimuth rad of blade 1.
@@ -55,18 +58,20 @@ class IndividualPitch:
         settings = self.settings
         share = 1.0 if settings.below_rated else min(max(above_minimum / FADE, 0.0), 1.0)
         limit = share * settings.amplitude
-        tilt_and_yaw = to_rotor(moment, azimuth)
-        self.integral = bounded(self.integral + settings.integral * dt * tilt_and_yaw, limit)
-        angles = bounded(self.integral + share * settings.proportional * tilt_and_yaw, limit)
+        now = to_rotor(moment, azimuth)
+        before = now if np.isnan(self.moment[0]) else self.moment
+        self.moment = now + exp(-settings.corner * dt) * (before - now) if dt else before
+        self.integral = bounded(self.integral + settings.integral * dt * self.moment, limit)
+        angles = bounded(self.integral + share * settings.proportional * self.moment, limit)
         return to_blades(angles, azimuth + settings.azimuth_offset, len(moment))
 
     def state(self) -> dict[str, np.ndarray]:
-        """The integrals."""
-        return {"individual_pitch": self.integral.copy()}
+        """The integrals and the filtered moments."""
+        return {"individual_pitch": np.append(self.integral, self.moment)}
 
     def restore(self, state: Mapping[str, np.ndarray]) -> None:
         """Take ``state`` back."""
-        self.integral = state["individual_pitch"].copy()
+        self.integral, self.moment = state["individual_pitch"].reshape(2, 2).copy()
 
 
 def blade_azimuths(azimuth: float, blades: int) -> Array:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import (
     BaseModel,
+    BeforeValidator,
     ConfigDict,
     Field,
     FiniteFloat,
@@ -47,7 +48,10 @@ class PitchActuatorOptions(Options):
 
 
 class IndividualPitchOptions(Options):
-    """Blade angles that take the once-per-revolution load off the roots."""
+    """Blade angles that take the once-per-revolution load off the roots.
+
+    The moments are low-pass filtered with the rated rotor speed as corner frequency.
+    """
 
     integral_gain_deg_per_MN_m_s: NonNegativeFloat | None = Field(
         None,
@@ -85,6 +89,11 @@ class Event(Options):
     mode: Mode = Field(description="What the turbine does from then on.")
 
 
+def _listed(value: Any) -> Any:
+    """A list as the tuple that strict validation wants of what is not JSON any more."""
+    return tuple(value) if isinstance(value, list) else value
+
+
 class ControlOptions(Options):
     """What all controllers share."""
 
@@ -110,7 +119,9 @@ class BaselineOptions(ControlOptions):
         None, description="A file that galerna tune wrote; the turbine's own gains by default."
     )
     mode: Mode = Field("production", description="What the turbine does at the start.")
-    events: tuple[Event, ...] = Field((), description="Changes of the mode.")
+    events: Annotated[tuple[Event, ...], BeforeValidator(_listed)] = Field(
+        (), description="Changes of the mode."
+    )
     fine_pitch_deg: FiniteFloat | None = Field(
         None, description="Lowest pitch in production; the turbine's own by default."
     )

@@ -8,6 +8,7 @@ from functools import partial
 from galerna.case import LoadedCase
 from galerna.contract import Array, Stations
 from galerna.control.drivetrain import PowerTrain
+from galerna.control.interface import Controller
 from galerna.coupling.base import base_path
 from galerna.coupling.control_loop import ControlLoop
 from galerna.coupling.controllers import controller, held_inertia, pitch_actuator, sample_time
@@ -99,18 +100,19 @@ def control_loop(
     turbine: Turbine,
     machine: FlexibleMachine,
     hub_wind: Callable[[float], Array],
+    from_outside: Controller | None = None,
 ) -> ControlLoop:
-    """The controller of a case with its actuators."""
+    """The controller of a case, or the one from outside, with its actuators."""
     options = case.case.control
     assert options is not None
     structure = case.case.structure or StructureOptions.rigid()
     loop = ControlLoop(
         machine,
-        controller(case, turbine),
+        controller(case, turbine, from_outside),
         PowerTrain.of(turbine.drivetrain),
         pitch_actuator(options, turbine),
         hub_wind,
-        sample_time(case),
+        None if options.sample_time_s is None else sample_time(case),
         torque_lag=options.torque_time_constant_s,
         held_inertia=held_inertia(turbine, structure.shaft == "flexible"),
     )

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from galerna.contract import Array, Channel
 from galerna.control.actuators import PitchActuator, lagged
@@ -26,12 +28,10 @@ CHANNELS = (
     Channel("drivetrain_losses", "W", "power lost in gearbox and generator"),
     Channel("pitch_demand", "rad", "demanded blade pitch", ("blade",), "BlPitchC{blade}", "deg",
             1.0 / DEG),
-    Channel("torque_demand", "N m", "demanded generator torque", (), "GenTqC", "kN-m", 1e-3),
-    Channel("brake_torque", "N m", "torque of the brake at the low-speed shaft", (), "HSSBrTqC",
-            "kN-m", 1e-3),
-    Channel("yaw_rate_demand", "rad/s", "demanded yaw rate", (), "YawRateC", "deg/s", 1.0 / DEG),
-    Channel("yaw_error", "rad", "nacelle yaw minus wind direction at the hub", (), "YawErr", "deg",
-            1.0 / DEG),
+    Channel("torque_demand", "N m", "demanded generator torque"),
+    Channel("brake_torque", "N m", "torque of the brake at the low-speed shaft"),
+    Channel("yaw_rate_demand", "rad/s", "demanded yaw rate"),
+    Channel("yaw_error", "rad", "nacelle yaw minus wind direction at the hub"),
 )  # fmt: skip
 CLOCK_TOLERANCE = 1e-9  #: s
 
@@ -68,9 +68,8 @@ class ControlLoop:
         self.demands = Demands(machine.pitch_angles(0.0), 0.0)
         self.torque = np.nan  #: N m that the generator gives
         self._braking = 0.0  # N m
-        self._once: dict[str, float | Array] = {}
+        self._once: dict[str, Any] = {}
         self._measured: Measurements | None = None
-        self._yaw = machine.yaw  # rad, of the yaw drive
 
     def command(self, time: float, dt: float) -> None:
         """Ask the controller if it is time, and set the machine for the step from ``time`` s."""
@@ -79,7 +78,7 @@ class ControlLoop:
         pitch = self._actuator.after(machine.pitch_angles(time), demands.pitch, dt)
         machine.go_pitch(pitch, time, dt)
         if demands.yaw_rate:
-            self._turn(demands.yaw_rate * dt, time, dt)
+            machine.go_yaw(machine.yaw_drive(time) + demands.yaw_rate * dt, time, dt)
         started = not np.isnan(self.torque)
         before = self.torque if started else demands.generator_torque
         self.torque = lagged(demands.generator_torque, before, self._torque_lag, dt)
@@ -87,20 +86,21 @@ class ControlLoop:
         machine.set_shaft_torque(-self._train.shaft_torque(self.torque, speed) - self._braking)
         self._measured = None
 
-    def _turn(self, angle: float, time: float, dt: float) -> None:
-        """Yaw on by an angle rad within the step."""
-        go_yaw = getattr(self.machine, "go_yaw", None)
-        if go_yaw is None:
-            raise ControllerError("control", "asks for yaw, but the machine has no yaw drive")
-        self._yaw += angle
-        go_yaw(self._yaw, time, dt)
-
-    def override(self, **demands: float | Array) -> None:
-        """Replace demands, by their names, for the next step; an external controller keeps them.
-
-        Raises ControllerError for demands that cannot be met.
-        """
-        self._once = demands
+    def override(
+        self,
+        pitch: ArrayLike | None = None,
+        torque: float | None = None,
+        yaw_rate: float | None = None,
+        brake: float | None = None,
+    ) -> None:
+        """Replace demands in the next step; an external controller keeps them."""
+        values = {
+            "pitch": pitch,
+            "generator_torque": torque,
+            "yaw_rate": yaw_rate,
+            "brake": brake,
+        }
+        self._once = {name: value for name, value in values.items() if value is not None}
 
     def measure(self, time: float) -> Measurements:
         """What the sensors show of the accepted state."""
@@ -135,8 +135,8 @@ class ControlLoop:
             self._next = (time if late else self._next) + self._sample_time
         if not self._once:
             return self.demands
-        demands = self._checked(replace(self.demands, **self._once), time)  # type: ignore[arg-type]
-        self._once = {}
+        once, self._once = self._once, {}
+        demands = self._checked(replace(self.demands, **once), time)
         if isinstance(self.controller, ExternalController):
             self.controller.hold(demands)
             self.demands = demands
@@ -210,7 +210,7 @@ class ControlLoop:
         own = {
             "clock": np.array(self._next),
             "pitch": demands.pitch.copy(),
-            "others": np.array([*others, self.torque, self._braking, self._yaw]),
+            "others": np.array([*others, self.torque, self._braking]),
             **self._actuator.state(),
             **self._brake.state(),
         }
@@ -220,7 +220,7 @@ class ControlLoop:
     def restore(self, state: Mapping[str, np.ndarray]) -> None:
         """Take ``state`` back."""
         self._next, self._measured, self._once = float(state["clock"]), None, {}
-        *others, self.torque, self._braking, self._yaw = state["others"].tolist()
+        *others, self.torque, self._braking = state["others"].tolist()
         self.demands = Demands(state["pitch"].copy(), *others)
         self._actuator.restore(state)
         self._brake.restore(state)
