@@ -1,7 +1,7 @@
 """Make everything that is generated here: ``python -m docs.build [PART ...]``.
 
-Parts: conventions, case, turbines, vortex_sections, vortex_wings, vortex_rotors, demo, validation,
-benchmarks; all where none is given.
+Parts: conventions, case, channels, turbines, vortex_sections, vortex_wings, vortex_rotors, demo,
+validation, benchmarks; all where none is given.
 """
 
 from __future__ import annotations
@@ -15,6 +15,7 @@ from pathlib import Path
 
 from docs import (
     case_reference,
+    channel_page,
     conventions_figure,
     turbine_pages,
     vortex_rotor_figures,
@@ -58,6 +59,7 @@ def galerna(*arguments: str, cwd: Path = ROOT, check: bool = True) -> None:
 PARTS: dict[str, Callable[[], Path]] = {
     "conventions": conventions_figure.draw,
     "case": case_reference.write,
+    "channels": channel_page.write,
     "turbines": turbine_pages.write,
     "vortex_sections": vortex_section_pages.write,
     "vortex_wings": vortex_wing_figures.draw,
