@@ -22,6 +22,7 @@ MODULES = (
     "lattice_rotors",
     "lattice_yaw",
     "lattice_turbulence",
+    "flexible_rotor",
     "machine_land",
     "machine_base_motion",
     "machine_operation",
