@@ -22,6 +22,7 @@ MODULES = (
     "lattice_rotors",
     "lattice_yaw",
     "lattice_turbulence",
+    "machine_modes",
     "flexible_rotor",
     "machine_land",
     "machine_base_motion",
