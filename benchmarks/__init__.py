@@ -7,7 +7,7 @@ from importlib import import_module
 
 from .framework import Benchmark
 
-MODULES = ("bem", "turbulence", "structure", "vortex_kernels", "vortex", "discon")
+MODULES = ("bem", "turbulence", "structure", "vortex_kernels", "vortex", "machine_start", "discon")
 
 
 def benchmarks() -> Sequence[Benchmark]:
