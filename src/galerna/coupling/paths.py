@@ -42,15 +42,19 @@ class StepPath:
 
 
 class SignalPath:
-    """An angle rad that a signal prescribes, or the integral of it: an angle from a speed."""
+    """An angle rad that a signal prescribes, or the integral of it: an angle from a speed.
+
+    Before time 0 an angle goes on as it changes there, so that a start is under way.
+    """
 
     def __init__(self, signal: Signal, *, integral: bool = False, offset: float = 0.0) -> None:
         self._knots, self._column = signal.knots(), 2 if integral else 0
         self._offset = offset
 
     def __call__(self, time: float) -> float:
-        value = evaluate(self._knots, 0, len(self._knots), time)[self._column]
-        return float(value) + self._offset
+        early = min(time, 0.0) if self._column == 0 else 0.0
+        found = evaluate(self._knots, 0, len(self._knots), time - early)
+        return float(found[self._column]) + early * found[1] + self._offset
 
 
 @dataclass(frozen=True)
