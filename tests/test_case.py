@@ -135,6 +135,11 @@ def test_a_good_case_is_read():
             "flow_output: no plane may have the name 'wa",
         ),
         (
+            "model: bem",
+            VORTEX + "flow_output: {interval_s: 0.12}",
+            "aerodynamics.flow_output.interval_s: 0.12 s is not a whole number of time steps",
+        ),
+        (
             "  shear",
             BOX.format("[8, 8, 8, 8]"),
             "7: inflow.turbulence.points: expected 3 values at",

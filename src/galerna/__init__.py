@@ -6,6 +6,7 @@ The names below load what they need when they are first used.
 from __future__ import annotations
 
 import os
+import sys
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
@@ -80,7 +81,10 @@ def __getattr__(name: str) -> Any:
     if name not in _HOMES:
         raise AttributeError(f"module 'galerna' has no attribute {name!r}")
     module, attribute = _HOMES[name]
-    return getattr(import_module(module), attribute)
+    found = getattr(import_module(module), attribute)
+    if "numba" in sys.modules:
+        import_module("galerna.compiling").watch()
+    return found
 
 
 def __dir__() -> list[str]:

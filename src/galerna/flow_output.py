@@ -25,9 +25,9 @@ def flow_folder(result: Path) -> Path:
 class FlowWriter(Callback):
     """Writes the flow of a vortex lattice into a folder, every so many accepted steps.
 
-    One series ``wake.pvd`` and one for each plane; ``options`` say which and when, rounded to
-    whole steps. A run that goes on ``since`` a time s continues the series that stand there.
-    Raises InputError where a series stands in the folder and is not to be replaced.
+    One series ``wake.pvd`` and one for each plane; ``options`` say which and when. A run that
+    goes on ``since`` a time s continues the series that stand there. Raises InputError where a
+    series stands in the folder and is not to be replaced.
     """
 
     def __init__(

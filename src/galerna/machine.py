@@ -16,6 +16,7 @@ from galerna.aero.bem.options import BemOptions
 from galerna.aero.body_drag import BodyDrag
 from galerna.case import Case, LoadedCase, Series, parse
 from galerna.channel_names import matching, nearest
+from galerna.compiling import watch
 from galerna.contract import Array, Channel, LoadModel
 from galerna.control.drivetrain import PowerTrain
 from galerna.errors import InputError
@@ -164,6 +165,7 @@ def load_turbine(case: LoadedCase) -> Turbine:
 
 def build_wind(case: LoadedCase, turbine: Turbine) -> BuiltInflow:
     """The wind of a case, made for its turbine and duration."""
+    watch()
     settings = case.case
     with case.blame("inflow"):
         return build(

@@ -12,7 +12,14 @@ from typing import Any
 from pydantic import ValidationError
 
 from galerna import examples
-from galerna.case.document import CaseError, Document, Problem, parse_document, read_document
+from galerna.case.document import (
+    CaseError,
+    Document,
+    KeyPath,
+    Problem,
+    parse_document,
+    read_document,
+)
 from galerna.case.options import Case
 from galerna.case.problems import problems_of
 from galerna.errors import InputError, did_you_mean
@@ -114,17 +121,24 @@ def _contradictions(case: Case) -> Iterator[Problem]:
     elif outputs.start_s > last:
         what = f"{outputs.start_s:g} s leaves no record: the last one is at {last:g} s"
         yield Problem(("outputs", "start_s"), what)
-    interval = outputs.interval_s
-    if interval is None:
-        return
-    if interval > duration:
-        what = f"{interval:g} s is longer than duration_s, {duration:g} s"
-        yield Problem(("outputs", "interval_s"), what)
+    if outputs.interval_s is not None:
+        path = ("outputs", "interval_s")
+        if outputs.interval_s > duration:
+            what = f"{outputs.interval_s:g} s is longer than duration_s, {duration:g} s"
+            yield Problem(path, what)
+        yield from _not_whole(path, outputs.interval_s, step)
+    flow = getattr(case.aerodynamics, "flow_output", None)
+    if flow is not None:
+        yield from _not_whole(("aerodynamics", "flow_output", "interval_s"), flow.interval_s, step)
+
+
+def _not_whole(path: KeyPath, interval: float, step: float) -> Iterator[Problem]:
+    """The problem of an interval s that is no whole number of time steps."""
     steps = interval / step
     if abs(steps - round(steps)) > 1e-6 * steps or round(steps) < 1:
         what = f"{interval:g} s is not a whole number of time steps of {step:g} s"
         nearest = max(round(steps), 1) * step
-        yield Problem(("outputs", "interval_s"), what, f"the nearest is {nearest:g} s")
+        yield Problem(path, what, f"the nearest is {nearest:g} s")
 
 
 def _plain(value: Any) -> Any:
