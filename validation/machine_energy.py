@@ -16,8 +16,11 @@ CLOSING = 1e-3  #: of the wind's work
 
 
 @cache
-def account(time_step: float, rho_inf: float = 0.9) -> dict[str, float]:
-    """The energies J after DURATION s in the same wind, whatever the step."""
+def account(time_step: float, rho_inf: float = 0.9, base: bool = False) -> dict[str, float]:
+    """The energies J after DURATION s in the same wind, whatever the step.
+
+    With ``base`` the tower's foot pitches by 3 deg at 0.1 Hz.
+    """
     case: dict[str, Any] = {
         "galerna": 1,
         "turbine": "nrel5mw",
@@ -32,6 +35,9 @@ def account(time_step: float, rho_inf: float = 0.9) -> dict[str, float]:
         "control": "baseline",
         "outputs": {"energy": True},
     }
+    if base:
+        swing = {"amplitude": 3.0, "frequency_hz": 0.1, "ramp_s": 5.0}
+        case["base_motion"] = {"pitch_deg": swing}
     simulation = build_machine(load(case)).simulation
     for _ in range(round(DURATION / time_step)):
         simulation.advance()
@@ -49,6 +55,7 @@ def energy() -> list[Check]:
         for name in ("electrical", "losses", "damping", "numerical", "kinetic", "elastic",
                      "potential", "pitch_drives")
     ]  # fmt: skip
+    moved = account(0.02, base=True)
     ratio = abs(coarse["energy_defect"] / usual["energy_defect"])
     return [
         *shares,
@@ -56,6 +63,11 @@ def energy() -> list[Check]:
               0.0, SOURCE, 100.0 * CLOSING, "%"),
         Check("the same at twice the step", 100.0 * coarse["energy_defect"] / work, 0.0, SOURCE,
               100.0 * CLOSING, "%"),
+        Check("what does not add up on a foot that pitches by 3 deg",
+              100.0 * moved["energy_defect"] / moved["energy_wind"], 0.0, SOURCE,
+              100.0 * CLOSING, "%"),
+        Check("work of what moves that foot over the wind's",
+              100.0 * moved["energy_base_motion"] / moved["energy_wind"], 0.0, SOURCE, unit="%"),
         Check("defect at 0.04 s over that at 0.02 s", ratio, 4.0,
               "an error of second order in the step", 1.0),
         Check("numerical dissipation at rho_inf 0.5 over that at 0.9",

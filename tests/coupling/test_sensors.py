@@ -10,7 +10,7 @@ from galerna.contract import Array, Loads, Stations
 from galerna.coupling.flexible import FlexibleMachine
 from galerna.coupling.sensors import Gauges
 from galerna.structure import TurbineOptions, with_initial_accelerations
-from galerna.structure.frames import exp_so3
+from galerna.structure.frames import exp_so3, rotation_about
 from galerna.structure.statics import static_equilibrium
 from galerna.structure.system import with_spin
 from galerna.units import DEG, RPM
@@ -188,6 +188,28 @@ def test_displacements_are_seen_along_their_axes() -> None:
     assert shown["tip_edgewise_displacement"][0] == pytest.approx(0.5 * cosine, rel=1e-2)
     assert shown["tip_twist"][0] == pytest.approx(0.1)
     assert shown["tip_out_of_plane_displacement"][1] == 0.0
+
+
+def test_a_tilted_base_shows_as_platform_motion_and_bends_nothing() -> None:
+    roll, pitch, yaw = 0.03, -0.05, 0.2
+    R = rotation_about(2, yaw) @ rotation_about(1, pitch) @ rotation_about(0, roll)
+    shift = np.array([1.0, -2.0, 0.5])
+    chosen = options(tower_elements=3, base_motion=lambda time: (np.zeros(3), np.eye(3)))
+    machine = FlexibleMachine(NREL, [BLADES], chosen)
+    state = machine.system.initial_state()
+    state.position[1:] = shift + state.position[1:] @ R.T
+    state.rotation[1:] = R @ state.rotation[1:]
+    machine.start(state)
+    assert machine.platform_motion() == pytest.approx([*shift, roll, pitch, yaw], abs=1e-12)
+    shown = machine.sensors.record(state, (), 0.0)
+    assert shown["platform_pitch"] == pytest.approx(pitch)
+    assert abs(shown["tower_top_fore_aft_displacement"]) < 1e-9
+    assert abs(shown["tower_top_pitch"]) < 1e-9
+    assert shown["tip_tower_clearance"] == pytest.approx(
+        FlexibleMachine(NREL, [BLADES], chosen).sensors.record(
+            machine.system.initial_state(), (), 0.0
+        )["tip_tower_clearance"]
+    )
 
 
 def test_a_bent_blade_carries_a_tip_load_with_its_lever() -> None:

@@ -205,7 +205,7 @@ class Outputs(Block):
     energy: bool = Field(
         False,
         description="Keep the account of the wind's work in a machine that moves: the channels "
-        "`energy_*`. It makes a step slower by a tenth.",
+        "`energy_*`. It makes a step slower by a fifth.",
     )
 
 
