@@ -125,6 +125,9 @@ class ControlLoop:
             root_moments=machine.root_moments(),
             tower_top_acceleration=machine.tower_top_acceleration(),
             platform=machine.platform_motion(),
+            platform_velocity=machine.platform_velocity(),
+            platform_acceleration=machine.platform_acceleration(),
+            nacelle_angular_acceleration=machine.nacelle_angular_acceleration(),
         )
 
     def _demanded(self, time: float) -> Demands:

@@ -264,6 +264,18 @@ class FlexibleMachine:
         """Displacement m and rotation rad (6,) of the base; about z first, about x last."""
         return self.sensors.tower.base_motion(self.accepted)
 
+    def platform_velocity(self) -> Array:
+        """Velocity m/s and angular velocity rad/s (6,) of the base in global axes."""
+        return self.sensors.tower.base_velocity(self.accepted)
+
+    def platform_acceleration(self) -> Array:
+        """Acceleration m/s2 and angular acceleration rad/s2 (6,) of the base in global axes."""
+        return self.sensors.tower.base_acceleration(self.accepted)
+
+    def nacelle_angular_acceleration(self) -> Array:
+        """Angular acceleration (3,) rad/s2 of the nacelle in its own axes."""
+        return self.sensors.tower.nacelle_angular_acceleration(self.accepted)
+
     def state(self) -> dict[str, np.ndarray]:
         """All that the next step depends on."""
         arrays = {name: getattr(self.accepted, name).copy() for name in ARRAYS}

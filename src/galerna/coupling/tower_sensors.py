@@ -86,6 +86,19 @@ class TowerSensors:
         """Acceleration (3,) m/s2 of the tower's top in the axes of the nacelle."""
         return true_acceleration(state, self.nacelle)
 
+    def nacelle_angular_acceleration(self, state: State) -> Array:
+        """Angular acceleration (3,) rad/s2 of the nacelle in its own axes."""
+        return state.acceleration[self.nacelle, 3:].copy()
+
+    def base_velocity(self, state: State) -> Array:
+        """Velocity m/s and angular velocity rad/s (6,) of the base in global axes."""
+        return (state.velocity[self.base].reshape(2, 3) @ state.rotation[self.base].T).ravel()
+
+    def base_acceleration(self, state: State) -> Array:
+        """Acceleration m/s2 and angular acceleration rad/s2 (6,) of the base in global axes."""
+        own = np.stack([true_acceleration(state, self.base), state.acceleration[self.base, 3:]])
+        return (own @ state.rotation[self.base].T).ravel()
+
     def base_motion(self, state: State) -> Array:
         """Displacement m and rotation rad (6,) of the base; about z first, about x last."""
         R = state.rotation[self.base]
