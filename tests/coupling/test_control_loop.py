@@ -204,3 +204,24 @@ def test_a_run_resumes_to_the_same_bits_with_all_states_of_the_loop():
         assert np.array_equal(first.pitch, second.pitch)
         assert first.rotor_speed == second.rotor_speed
         assert first.generator_torque == second.generator_torque
+
+
+def test_the_nacelle_turns_into_the_wind():
+    yaw = {"rate_deg_s": 1.0, "dead_band_deg": 5.0, "averaging_s": 1.0}
+    inflow = {"wind_speed_m_s": 12.0, "direction_deg": 8.0}
+    control = {"model": "baseline", "yaw": yaw}
+    result = galerna.run(case(inflow=inflow, control=control))
+    assert float(result.yaw_error[0]) == pytest.approx(-8.0 * DEG, abs=0.2 * DEG)
+    assert float(result.yaw[-1]) == pytest.approx(8.0 * DEG, abs=0.1 * DEG)
+    assert np.diff(result.yaw.values).max() == pytest.approx(0.1 * DEG, rel=1e-3)
+
+
+def test_the_yaw_error_is_that_of_the_nacelle_against_the_wind():
+    operation = {"operating_point": "steady", "yaw_deg": 30.0}
+    with galerna.start(case(operation=operation)) as sim:
+        assert sim.measure().yaw_error == pytest.approx(30.0 * DEG)
+
+
+def test_without_control_and_operation_a_case_says_what_to_give():
+    with pytest.raises(InputError, match="control: baseline"):
+        galerna.run({key: value for key, value in case().items() if key != "control"})
