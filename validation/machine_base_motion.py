@@ -9,16 +9,23 @@ import numpy as np
 import xarray
 from scipy.signal import periodogram
 
+from galerna import turbine as turbines
 from galerna.contract import Array
+from galerna.structure.mode_names import name_modes
+from galerna.structure.modes import natural_modes
+from galerna.structure.statics import static_equilibrium
+from galerna.structure.turbine import TurbineOptions, turbine_system
 
 from .framework import Case, Check, statement
 from .machine import late, simulate
 
 PITCH = "dissertation 5.2.1, platform pitch"
 ROLL = "dissertation 5.2.2, platform roll"
-LITERATURE = "tower fore-aft bending of the OC3 turbine, dissertation table 5.3"
+CLAMPED = "galerna, natural frequency of the parked turbine with its platform held"
+AFLOAT = "dissertation table 5.3, of the turbine afloat"
 FREQUENCY = 0.034  #: Hz, of the platform's pitch and roll
 ROTATION = 12.1 / 60.0  #: Hz
+BENDING = (0.3, 0.55)  #: Hz, where the tower bends
 START, PERIODS = 30.0, 4  #: s that settle, and what counts then, in periods of FREQUENCY
 MEAN = 0.02  #: of the fixed base's mean: "negligible differences"
 SMALL = 0.05  #: of the fixed base's deviation: a hundredth of the motion adds next to nothing
@@ -67,8 +74,23 @@ def pitching() -> Iterator[Check]:
     ratio = deviation(small[OUT]) / deviation(fixed[OUT])
     yield Check("0.04 deg peak to peak: out-of-plane deviation over that of the fixed base",
                 ratio, 1.0, PITCH, SMALL)  # fmt: skip
-    yield Check("tower bending, largest peak of the fixed base's tower top from 0.3 to 0.55 Hz",
-                largest_peak(fixed[FORE_AFT], 0.3, 0.55), 0.47, LITERATURE, None, "Hz")  # fmt: skip
+    bending = largest_peak(fixed[FORE_AFT], *BENDING)
+    for frequency, source in ((held_tower_frequency(), CLAMPED), (0.47, AFLOAT)):
+        yield Check("tower bending: largest peak of the fixed base's tower top, 0.3 to 0.55 Hz",
+                    bending, frequency, source, None, "Hz")  # fmt: skip
+
+
+def held_tower_frequency() -> float:
+    """Frequency Hz of the first fore-aft bending with the platform held and the rotor locked."""
+    turbine = turbines.load("nrel5mw_oc3")
+    assert turbine.platform is not None
+    place = np.array(turbine.platform.reference_point)
+    options = TurbineOptions(rotor="locked", base_motion=lambda time: (place, np.eye(3)))
+    model = turbine_system(turbine, options)
+    state = static_equilibrium(model.system)
+    modes = natural_modes(model.system, state, 8)
+    found = dict(zip(name_modes(model, state, modes), modes.frequency.tolist(), strict=True))
+    return float(found["tower fore-aft 1"])
 
 
 def rolling() -> Iterator[Check]:
@@ -127,18 +149,16 @@ def largest_peak(values: xarray.DataArray, low: float = 0.02, high: float = 2.0)
 
 
 def has_peak(values: xarray.DataArray, frequency: float) -> bool:
-    """Whether the density near a frequency is ten times that half way to its neighbours.
+    """Whether the density near a frequency stands out three times from a valley on either side.
 
-    The neighbours are a period's worth of FREQUENCY away on both sides.
+    The valleys are looked for within two thirds of FREQUENCY.
     """
     at, power = spectrum(values)
-    resolution = at[1]
-
-    def near(center: float) -> float:
-        return float(power[np.abs(at - center) <= 1.5 * resolution].max())
-
-    beside = max(near(frequency - 0.5 * FREQUENCY), near(frequency + 0.5 * FREQUENCY))
-    return near(frequency) > 10.0 * beside
+    line, reach = at[1], 2.0 * FREQUENCY / 3.0
+    top = power[np.abs(at - frequency) <= line].max()
+    below = power[(at >= frequency - reach) & (at <= frequency)].min()
+    above = power[(at <= frequency + reach) & (at >= frequency)].min()
+    return bool(top > 3.0 * max(below, above))
 
 
 STORY = """
@@ -146,8 +166,10 @@ The NREL 5 MW on the OC3 tower, flexible, 11.4 m/s without shear, 12.1 rpm and n
 platform made to turn as a cosine, 4 deg peak to peak. The dissertation computed this with its
 vortex lattice, galerna here by blade-element momentum with dynamic inflow and unsteady sections,
 without the tower's influence. The ratios depend on what varies on a fixed base (tilt, weight,
-deflection), which is little, so they are shown and not judged. 30 s settle, then four periods of
-0.034 Hz count.
+deflection), which is little, so they are shown and not judged. The structural in-plane moment is
+the blade's weight and hardly notices. The tower bends at 0.36 Hz where its platform is held; the
+0.47 Hz of the literature are those of the turbine afloat, and the dissertation's 0.4 Hz hold, as it
+says, a mistake in the tower's mass. 30 s settle, then four periods of 0.034 Hz count.
 """
 
 CASES = (
