@@ -13,6 +13,8 @@ $(READY): pyproject.toml
 	  || { echo "galerna needs Python 3.11 or newer; run: make PYTHON=python3.11 ..."; exit 1; }
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
+	@# a controller to test with; its own dependencies are not needed, nor is it everywhere
+	-$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-deps rosco==2.10.6
 	@touch $(READY)
 
 demo: $(READY)
