@@ -26,7 +26,7 @@ class Watch(event.Listener):  # type: ignore[misc]
 
     def __init__(self) -> None:
         self._depth, self._began = 0, 0.0
-        self._forget()
+        self._said, self._count, self._spent = False, 0, 0.0
 
     def on_start(self, event: event.Event) -> None:
         """A kernel, perhaps one that another one calls."""
