@@ -51,6 +51,15 @@ def test_torque_never_jumps_or_falls_below_rated(name: str) -> None:
     assert torque[-1] == pytest.approx(curve.rated_torque, rel=1e-6)
 
 
+def test_a_constant_torque_is_that_of_the_rated_speed() -> None:
+    """NREL/TP-500-47535: 43,093.55 N m, and so rated power at rated speed."""
+    curve = torque_curve(NREL.control, NREL.drivetrain, "constant_torque")
+    for speed in (1170.0, 1300.0):
+        assert curve.torque(speed * RPM) == pytest.approx(43093.55, rel=1e-5)
+    below = [curve.torque(share * curve.rated) for share in (1.0 - 1e-9, 1.0)]
+    assert below[0] == pytest.approx(below[1], rel=1e-6)
+
+
 def test_pitched_blades_hold_region_three() -> None:
     curve = torque_curve(NREL.control, NREL.drivetrain)
     speed = 0.97 * curve.rated
@@ -109,6 +118,24 @@ def test_pitch_does_not_wind_up() -> None:
     for _ in range(1000):
         assert loop.hold_speed(80.0, 0.0, 0.1) == 0.0
     assert loop.hold_speed(124.0, 0.0, 0.1) > 0.0
+
+
+def test_pitch_at_its_fastest_does_not_wind_up_and_turns_back_at_once() -> None:
+    gains = PitchGains.of_schedule(NREL.control.pitch_schedule)
+    loop, dt, rate = CollectivePitch(gains, 122.9, 1.5, rate=0.02), 0.05, 0.02
+    rising = [loop.hold_speed(122.9 + 15.0, 0.0, dt) for _ in range(100)]
+    assert np.diff(rising) == pytest.approx(rate * dt)
+    assert loop.integral <= rising[-1]
+    falling = [loop.hold_speed(122.9 - 5.0, 0.0, dt) for _ in range(20)]
+    assert np.diff([rising[-1], *falling]) == pytest.approx(-rate * dt)
+
+
+def test_the_derivative_acts_on_the_filtered_speed() -> None:
+    still = [np.array([0.0, 1.0]), np.zeros(2), np.zeros(2), np.full(2, 0.01)]
+    loop = CollectivePitch(PitchGains(*still), 100.0, 1.5)
+    loop.start(0.5)
+    assert loop.hold_speed(101.0, 0.0, 0.1) == pytest.approx(0.5)
+    assert loop.hold_speed(103.0, 0.0, 0.1) == pytest.approx(0.5 + 0.01 * 20.0)
 
 
 def test_filter_has_its_corner() -> None:

@@ -44,8 +44,8 @@ class TorqueCurve:
 
     @property
     def rated_torque(self) -> float:
-        """Torque at the start of region 3."""
-        return self.power / self.rated
+        """Torque at the start of region 3; where it is constant, that of the rated speed."""
+        return rated_torque(self.power, self.rated, self.above_rated)
 
     def torque(self, speed: float, region_3: float = 0.0) -> float:
         """Torque at a speed.
@@ -81,6 +81,11 @@ class TorqueCurve:
         return low + share * (self.rated_torque - low)
 
 
+def rated_torque(power: float, rated: float, above_rated: AboveRated) -> float:
+    """Torque N m that a power W asks for where region 3 begins, at ``rated`` rad/s."""
+    return power / rated if above_rated == "constant_power" else RATED_SHARE * power / rated
+
+
 def torque_curve(
     control: Control, drivetrain: Drivetrain, above_rated: AboveRated = "constant_power"
 ) -> TorqueCurve:
@@ -98,7 +103,7 @@ def torque_curve(
     rated = RATED_SHARE * control.rated_rotor_speed * ratio
     cut_in = control.minimum_rotor_speed * ratio
     ramp_end = (control.region_2_rotor_speed or 0.0) * ratio or CUT_IN_RAMP * cut_in
-    torque = power / rated
+    torque = rated_torque(power, rated, above_rated)
     synchronous = rated / (1.0 + SLIP)
     slope = torque / (rated - synchronous)
     if gain * rated**2 >= torque:  # the optimum gives the rated torque before the rated speed

@@ -39,7 +39,8 @@ def controller(
     if isinstance(options, DisconOptions):
         return DisconController(options, turbine, case.folder, sample_time(case))
     if isinstance(options, PythonOptions):
-        return python_controller(options.object, turbine, case.folder)
+        with case.blame("control", "object"):
+            return python_controller(options.object, turbine, case.folder)
     if isinstance(options, BaselineOptions):
         return baseline(options, with_gains(case, turbine))
     return from_outside or ExternalController()
