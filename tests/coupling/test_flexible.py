@@ -8,11 +8,11 @@ import pytest
 from galerna import turbine as turbines
 from galerna.contract import Loads, Stations
 from galerna.coupling.flexible import FlexibleMachine
-from galerna.errors import InputError
+from galerna.errors import ConvergenceError, InputError
 from galerna.kinematics import PrescribedMotion, PrescribedOperation
 from galerna.signals import Signal
 from galerna.simulation import Simulation
-from galerna.structure import TurbineOptions, with_initial_accelerations
+from galerna.structure import Tolerance, TurbineOptions, with_initial_accelerations
 from galerna.structure.system import with_spin
 from galerna.units import DEG
 
@@ -127,3 +127,54 @@ def test_a_run_continues_from_its_state_with_the_same_bits() -> None:
 def test_a_part_that_does_not_exist_is_named() -> None:
     with pytest.raises(InputError, match="blade4"):
         FlexibleMachine(NREL, [(Stations("blade4", SPAN),)])
+
+
+class Damper(Push):
+    """A force against the velocity downwind: it takes energy."""
+
+    asked = 0
+
+    def loads(self, time, motion) -> Loads:
+        self.asked += 1
+        loads = Loads.zero(len(motion.position))
+        loads.force[:, 0] = -50.0 * motion.velocity[:, 0]
+        return loads
+
+
+def energy_after(loose: bool, dt: float, tolerance: Tolerance | None = None) -> tuple[float, int]:
+    """Energy J after half a second of swinging against a damper, and how often it was asked."""
+    damper = Damper()
+    options = TurbineOptions(blade_elements=6, tower_elements=4)
+    machine = FlexibleMachine(NREL, [damper.stations], options, tolerance=tolerance, loose=loose)
+    turning(machine, damper, 1.2)
+    simulation, damper.asked = Simulation(machine, {"damper": damper}, dt), 0
+    for _ in range(round(0.5 / dt)):
+        simulation.advance()
+    return sum(machine.system.energies(machine.accepted)), damper.asked
+
+
+def test_loose_coupling_errs_in_energy_where_strong_coupling_does_not() -> None:
+    exact, _ = energy_after(False, 0.01, Tolerance(relative=1e-9))
+    strong, often = energy_after(False, 0.01)
+    loose, once = energy_after(True, 0.01)
+    assert once == 50
+    assert often > 1.5 * once
+    assert abs(loose - exact) > 10.0 * abs(strong - exact)
+
+
+class Explosive(Push):
+    """A force that grows with the velocity it makes, faster than any step can follow."""
+
+    def loads(self, time, motion) -> Loads:
+        loads = Loads.zero(len(motion.position))
+        loads.force[:] = 2e5 * motion.velocity
+        return loads
+
+
+def test_a_step_that_finds_no_balance_names_time_part_and_frame() -> None:
+    load = Explosive()
+    machine = FlexibleMachine(NREL, [load.stations], TurbineOptions(blade_elements=6))
+    turning(machine, load, 1.0)
+    with pytest.raises(ConvergenceError, match=r"structure, .*blade\d.* of its span at t = ") as it:
+        Simulation(machine, {"load": load}, 0.02, halvings=1).advance()
+    assert it.value.time > 0.0

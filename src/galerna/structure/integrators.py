@@ -65,6 +65,7 @@ class Scheme:
         return cls(0.0, 0.0, 0.25 * (gamma + 0.5) ** 2, gamma)
 
 
+FARTHEST = 1e6  #: m or rad that a frame can move in a step that converges
 REFRESH = 0.25  #: contraction of Newton's method above which the tangent is made anew
 
 
@@ -126,6 +127,8 @@ def _correct(
         change = apply(inverse[i], variation[i])
         for k in range(6):
             increment[i, k] += change[k]
+            if not abs(increment[i, k]) < FARTHEST:
+                return np.inf
             v[i, k] += factors[0] * change[k]
             v_rate[i, k] += factors[1] * change[k]
             auxiliary[i, k] += factors[2] * change[k]
