@@ -8,7 +8,7 @@ import pytest
 from galerna import turbine as turbines
 from galerna.aero.bem.steady import UniformWind, steady_rotor
 from galerna.case import parse
-from galerna.coupling.equilibrium import SteadyMachine
+from galerna.coupling.equilibrium import Relaxed, SteadyMachine
 from galerna.coupling.operating_point import OperatingPoint, Strategy, operating_point
 from galerna.errors import ConvergenceError
 from galerna.machine import build_machine
@@ -109,6 +109,28 @@ def test_stands_still_feathered_where_it_is_to_start_up() -> None:
     assert structure.pitch_angles(0.0) == pytest.approx(np.full(3, 90.0 * DEG))
     assert structure.rotor_speed == pytest.approx(0.0, abs=1e-6)
     built.simulation.advance()
+
+
+def test_finds_a_start_far_outside_of_the_operating_range() -> None:
+    beyond = machine_in(30.0, "iea15mw").simulation.structure
+    assert beyond.rotor_speed == pytest.approx(7.56 * RPM, rel=1e-3)
+    assert 20.0 * DEG < beyond.pitch_angles(0.0)[0] < 27.0 * DEG
+    calm = machine_in(1.0).simulation.structure
+    assert 0.0 < calm.rotor_speed < 5.0 * RPM
+    askew = "operation: {operating_point: steady, yaw_deg: 90}\n"
+    text = "galerna: 1\nturbine: nrel5mw\nduration_s: 9\ninflow: {wind_speed_m_s: 40}\n"
+    text += "structure: flexible\ncontrol: {mode: idling}\n" + askew
+    idle = build_machine(parse(text, "case", ".")).simulation.structure
+    assert idle.pitch_angles(0.0) == pytest.approx(np.full(3, 90.0 * DEG))
+
+
+def test_relaxation_finds_the_balance_of_a_stiff_and_a_soft_loop() -> None:
+    """Loads -0.9 and 0.8 of those that bend the shape: plain passes hardly converge."""
+    for gain in (-0.9, 0.8, -1.5):
+        relaxed, loads = Relaxed(), np.zeros((1, 6))
+        for _ in range(12):
+            loads = 1.0 + gain * relaxed(loads)
+        assert loads == pytest.approx(np.full((1, 6), 1.0 / (1.0 - gain)), rel=1e-6)
 
 
 def test_flexible_equilibrium_of_stiff_parts_is_the_rigid_rotor() -> None:

@@ -30,6 +30,7 @@ from galerna.units import AIR_DENSITY
 
 PASSES = 30  #: of loads and shape, at most
 POSITION_TOLERANCE = 3e-6  #: of the rotor radius, between two passes
+SMALLEST_SHARE, LARGEST_SHARE = 0.2, 2.0  #: of the change of the loads that is taken
 AZIMUTHS = 2  #: in the sector of one blade, for means
 
 
@@ -123,13 +124,14 @@ class SteadyMachine:
     ) -> State:
         """The shape at one azimuth, ``turned`` rad on from the first; velocities are the spin's."""
         state = self._near(pitch, turned, time)
+        relaxed = Relaxed()
         for _ in range(PASSES):
             before = state.position.copy()
             self.machine.start(with_spin(state, *self._spin(state, rotor_speed)))
             state = static_equilibrium(
                 self.system,
                 state,
-                self.forces(),
+                Forces(np.zeros_like(state.velocity), relaxed(self.forces().follower)),
                 tolerance=1e-8,
                 spin=self._spin(state, rotor_speed),
             )
@@ -196,6 +198,29 @@ class SteadyMachine:
         """Axis (3,) about which blade ``k`` pitches towards feather, in the hub's axes."""
         _, axes = self.parts.places[f"blade{k + 1}"]
         return -self.parts.places["hub"][1].T @ axes[:, 2]
+
+
+class Relaxed:
+    """Loads on the way to their balance with the shape, by Aitken's relaxation of all of them."""
+
+    def __init__(self) -> None:
+        self._used: Array | None = None
+        self._last: Array | None = None
+        self._share = 1.0
+
+    def __call__(self, loads: Array) -> Array:
+        """What to put on the structure next, given the loads (n,6) on its last shape."""
+        if self._used is None:
+            self._used = loads.copy()
+            return self._used
+        error = loads - self._used
+        if self._last is not None:
+            change = error - self._last
+            share = -self._share * float((self._last * change).sum() / (change * change).sum())
+            self._share = min(max(share, SMALLEST_SHARE), LARGEST_SHARE)
+        self._last = error
+        self._used = self._used + self._share * error
+        return self._used
 
 
 def _held(turbine: Turbine, options: TurbineOptions) -> TurbineOptions:
