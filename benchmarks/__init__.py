@@ -7,7 +7,17 @@ from importlib import import_module
 
 from .framework import Benchmark
 
-MODULES = ("bem", "turbulence", "structure", "vortex_kernels", "vortex", "machine_start", "discon")
+MODULES = (
+    "bem",
+    "turbulence",
+    "structure",
+    "vortex_kernels",
+    "vortex",
+    "machine",
+    "machine_start",
+    "machine_vortex",
+    "discon",
+)
 
 
 def benchmarks() -> Sequence[Benchmark]:

@@ -22,6 +22,7 @@ EXPECTED = {
     "yawed": ("rotor_power", 1.0e6, 1.8e6),
     "gust": ("rotor_power", 12e6, 20e6),
     "free_wake": ("rotor_power", 1.0e6, 4.5e6),
+    "flexible_free_wake": ("rotor_power", 3.5e6, 6.5e6),
     "controlled": ("electrical_power", 2.5e6, 5.5e6),
     "platform_motion": ("rotor_power", 4.5e6, 6.5e6),
     "stop": ("electrical_power", 9.5e6, 10.5e6),

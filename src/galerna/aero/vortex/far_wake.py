@@ -26,7 +26,7 @@ from galerna.contract import Array
 NEAR = 2.0  #: chords from a surface, within which a row of a wake is summed at every point
 NODES = 4  #: points of a chord that the velocity of the others is interpolated from
 WORTH = 3e6  #: pairs of panel and point, from which on interpolation is worth its overhead
-SLENDER = 10.0  #: lengths over distance of segments, above which single precision loses digits
+SLENDER = 20.0  #: lengths over distance of segments, above which single precision loses digits
 
 MakeField = Callable[[Sequence[Sheet], str], InducedField]
 

@@ -18,15 +18,19 @@ from galerna.aero.vortex.simd import FASTMATH
 from galerna.contract import Array
 
 
-def normal_influence(vertices: Array, points: Array, normals: Array) -> Array:
+def normal_influence(
+    vertices: Array, points: Array, normals: Array, core_radius: Array | float = 0.0
+) -> Array:
     """Velocity (k, m*n) 1/m along normals (k,3) at points (k,3) m of each ring of circulation 1.
 
-    The rings stand between vertices (m+1,n+1,3) m without a core; ring (i,j) is column i*n+j.
+    The rings stand between vertices (m+1,n+1,3) m; ring (i,j) is column i*n+j. ``core_radius`` m
+    stands on the vertices, or anything that broadcasts to them.
     """
     vertices, points, normals = (
         np.ascontiguousarray(a, float) for a in (vertices, points, normals)
     )
-    table = _unit_table(vertices, np.zeros(vertices.shape[:2]))
+    core = np.ascontiguousarray(np.broadcast_to(core_radius, vertices.shape[:2]), float)
+    table = _unit_table(vertices, core)
     rows, columns = vertices.shape[0] - 1, vertices.shape[1] - 1
     influence = np.zeros((len(points), rows * columns))
     _add_rings(table, rows, columns, points, normals, influence)

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from galerna.aero.vortex.influence import strip_influence
+from galerna.aero.vortex.influence import normal_influence
 from galerna.aero.vortex.lattice import Lattice
 from galerna.aero.vortex.mirror import MirrorPlane
 from galerna.aero.vortex.sheet import Sheet
@@ -128,20 +128,12 @@ class EdgePanels:
         self, points: Array, normals: Array, mirror: MirrorPlane | None
     ) -> tuple[Array, Array]:
         """Normal velocities (N,) of the known part, (N,n) 1/m of the shares of circulation 1."""
-        known, shares = np.zeros(len(points)), np.zeros((len(points), self.known.shape[1]))
-        for i in range(len(self.known)):
-            rows = slice(i, i + 2)
-            core = (
-                self.core_radius if isinstance(self.core_radius, float) else self.core_radius[rows]
-            )
-            velocity = strip_influence(self.vertices[rows], points, core)
-            if mirror is not None:
-                image = strip_influence(self.vertices[rows], mirror.reflect_points(points), core)
-                velocity += mirror.reflect_vectors(image)
-            normal = np.einsum("pni,pi->pn", velocity, normals)
-            known += normal @ self.known[i]
-            shares += normal * self.share[i]
-        return known, shares
+        rings = normal_influence(self.vertices, points, normals, self.core_radius)
+        if mirror is not None:
+            image = mirror.reflect_points(points), mirror.reflect_vectors(normals)
+            rings += normal_influence(self.vertices, *image, self.core_radius)
+        shares = np.einsum("pqn,qn->pn", rings.reshape(len(points), *self.share.shape), self.share)
+        return rings @ self.known.ravel(), shares
 
     def sheet(self, trailing: Array) -> Sheet:
         """The rings with their circulation, once the trailing one (n,) is known."""

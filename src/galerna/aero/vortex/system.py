@@ -54,14 +54,16 @@ class BoundSystem:
         self.iterations = 0  #: of GMRES in the last ``solve``; 0 when none were needed
         self.factorisations = 0  #: so far
 
-    def place(self, surfaces: Sequence[Surface]) -> None:
-        """Take the surfaces where they are now."""
+    def place(self, surfaces: Sequence[Surface], often: bool = False) -> None:
+        """Take the surfaces where they are now; factorise if ``solve`` is to be called often."""
         self._surfaces = list(surfaces)
         self._matrix = None
         if self._factor is None:
             self._factorise(self.influence())
         elif not self._moved_rigidly(self._factor.corners):
             self._matrix = self.influence()
+            if often:
+                self._factorise(self._matrix)
 
     def guess(self, circulation: Array) -> None:
         """Begin the search for circulations of deformed surfaces with these (N,) m2/s."""

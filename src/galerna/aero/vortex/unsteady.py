@@ -163,7 +163,7 @@ class UnsteadyLattice:
         trial = self._begun()
         trial.wake.attach([s.lattice.vertices[-1] for s in surfaces])
         if trial.held is None:
-            self.system.place(surfaces)
+            self.system.place(surfaces, often=self.options.hold_influences)
         flow = self._flow(trial, time, surfaces)
         rate = None if self.options.quasi_steady else trial.memory.rates(flow.circulation, trial.dt)
         options = self.options

@@ -12,8 +12,17 @@ towards row k-1, and the circulation of the panel between rows k-1 and k becomes
 
 which is the dissertation's convection equation with its Courant number (eq. 4.4) and, in the same
 fraction, its remeshing (4.1.2). It conserves the sum of G_k (a_k - a_{k-1}) but for what enters
-and leaves. With equal panels of age dt, C = 1 and rows shift (eq. 2.71). Rows of a rotor are
-interpolated about their centre by slerp (eq. 4.6), so that a helix stays the same helix.
+and leaves. With equal panels of age dt, C = 1 and rows shift (eq. 2.71).
+
+Straight interpolation would cut corners in every step, and a wake that slows down would lie too
+near to the rotor. Rows are interpolated by a parabola through the next older one, with w the
+panels' widths and r = w_k / w_{k+1}:
+
+    x <- (1 - C_k) x_k + C_k x_{k-1} - b [(x_{k+1} - x_k) - (x_k - x_{k-1})/r],
+    b = C_k (1 - C_k) r^2/(1 + r)                                                          (3)
+
+For a rotor x is the way along the axis, the radius and the angle about the rows' centre (slerp,
+eq. 4.6), so that a helix stays the same helix.
 """
 
 from __future__ import annotations
@@ -77,7 +86,7 @@ class Wake:
         vertices = tuple(np.empty_like(x) for x in self.vertices)
         circulation = tuple(np.empty_like(g) for g in self.circulation)
         for s, (x, u, g) in enumerate(zip(self.vertices, velocity, self.circulation, strict=True)):
-            _move(x, u, elapsed, fraction, origins, direction, vertices[s])
+            _move(x, u, elapsed, self.ages, fraction, origins, direction, vertices[s])
             _convect(g, shed[s], fraction, circulation[s])
         return replace(self, vertices=vertices, circulation=circulation, centre=centre)
 
@@ -202,51 +211,90 @@ def _convect(circulation, shed, fraction, out):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, error_model="numpy")
-def _move(x, velocity, elapsed, fraction, origins, axis, out):  # type: ignore[no-untyped-def]
-    """Move vertices and put the new rows between them."""
-    old, new = np.empty(3), np.empty(3)
+def _move(x, velocity, elapsed, ages, fraction, origins, axis, out):  # type: ignore[no-untyped-def]
+    """Move vertices and put the new rows between them, eq. (3)."""
+    older, old, new = np.empty(3), np.empty(3), np.empty(3)
     turns = axis[0] != 0.0 or axis[1] != 0.0 or axis[2] != 0.0
+    last = x.shape[0] - 1
     for j in range(x.shape[1]):
         for i in range(3):
             new[i] = out[0, j, i] = x[0, j, i] + elapsed * velocity[0, j, i]
-        for k in range(1, x.shape[0]):
+            old[i] = x[1, j, i] + elapsed * velocity[1, j, i]
+        for k in range(1, last + 1):
+            behind = min(k + 1, last)
             for i in range(3):
-                old[i] = x[k, j, i] + elapsed * velocity[k, j, i]
+                older[i] = x[behind, j, i] + elapsed * velocity[behind, j, i]
             c = fraction[k - 1]
             if c == 1.0:
                 out[k, j] = new
-            elif turns:
-                _between_turns(old, new, origins[k], origins[k - 1], axis, c, out[k, j])
             else:
-                for i in range(3):
-                    out[k, j, i] = old[i] + c * (new[i] - old[i])
+                width = ages[k] - ages[k - 1]
+                weight, ratio = 0.0, 1.0
+                if k < last:
+                    ratio = width / (ages[k + 1] - ages[k])
+                    weight = c * (1.0 - c) * ratio * ratio / (1.0 + ratio)
+                if turns:
+                    _between_turns(
+                        older, old, new, origins[behind], origins[k], origins[k - 1], axis,
+                        c, weight, ratio, out[k, j],
+                    )  # fmt: skip
+                else:
+                    for i in range(3):
+                        out[k, j, i] = _between(older[i], old[i], new[i], c, weight, ratio)
             new[:] = old
+            old[:] = older
 
 
 @njit(cache=True, error_model="numpy")
-def _between_turns(a, b, centre_a, centre_b, axis, c, out):  # type: ignore[no-untyped-def]
-    """The point at fraction c from a to b: along the axis and in radius linear, in angle too."""
-    along_a = along_b = 0.0
-    for i in range(3):
-        along_a += (a[i] - centre_a[i]) * axis[i]
-        along_b += (b[i] - centre_b[i]) * axis[i]
-    p, q, side = np.empty(3), np.empty(3), np.empty(3)
-    for i in range(3):
-        p[i] = a[i] - centre_a[i] - along_a * axis[i]
-        q[i] = b[i] - centre_b[i] - along_b * axis[i]
+def _between(older, old, new, c, weight, ratio):  # type: ignore[no-untyped-def]
+    """Eq. (3) for one coordinate; ``weight`` 0 is linear."""
+    return old + c * (new - old) - weight * ((older - old) - (old - new) / ratio)
+
+
+@njit(cache=True, error_model="numpy")
+def _between_turns(z, a, b, centre_z, centre_a, centre_b, axis, c, weight, ratio, out):  # type: ignore[no-untyped-def]
+    """The point between a and b, z behind them: eq. (3) for the way along the axis, for the
+    radius and for the angle about the centres.
+    """
+    p, q, o, side = np.empty(3), np.empty(3), np.empty(3), np.empty(3)
+    along_a = _across(a, centre_a, axis, p)
+    along_b = _across(b, centre_b, axis, q)
+    along_z = _across(z, centre_z, axis, o)
     for i in range(3):
         side[i] = axis[i - 2] * p[i - 1] - axis[i - 1] * p[i - 2]
-    radius_a = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2])
-    radius_b = sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2])
-    ahead = side[0] * q[0] + side[1] * q[1] + side[2] * q[2]
-    angle = c * atan2(ahead, p[0] * q[0] + p[1] * q[1] + p[2] * q[2])
-    stretch = 1.0 - c + c * radius_b / radius_a
+    radius = _length(p)
+    if radius == 0.0:
+        for i in range(3):
+            out[i] = _between(z[i], a[i], b[i], c, weight, ratio)
+        return
+    newer, older = _angle(p, side, q), _angle(p, side, o)
+    angle = _between(older, 0.0, newer, c, weight, ratio)
+    stretch = _between(_length(o), radius, _length(q), c, weight, ratio) / radius
+    along = _between(along_z, along_a, along_b, c, weight, ratio)
     for i in range(3):
-        out[i] = (
-            centre_a[i]
-            + c * (centre_b[i] - centre_a[i])
-            + (along_a + c * (along_b - along_a)) * axis[i]
-            + stretch * (cos(angle) * p[i] + sin(angle) * side[i])
-            if radius_a > 0.0
-            else a[i] + c * (b[i] - a[i])
-        )
+        centre = _between(centre_z[i], centre_a[i], centre_b[i], c, weight, ratio)
+        out[i] = centre + along * axis[i] + stretch * (cos(angle) * p[i] + sin(angle) * side[i])
+
+
+@njit(cache=True, error_model="numpy")
+def _across(point, centre, axis, arm):  # type: ignore[no-untyped-def]
+    """Write the arm (3,) across the axis from the centre to a point; how far along it stands."""
+    along = 0.0
+    for i in range(3):
+        arm[i] = point[i] - centre[i]
+        along += arm[i] * axis[i]
+    for i in range(3):
+        arm[i] -= along * axis[i]
+    return along
+
+
+@njit(cache=True, error_model="numpy")
+def _length(a):  # type: ignore[no-untyped-def]
+    return sqrt(a[0] * a[0] + a[1] * a[1] + a[2] * a[2])
+
+
+@njit(cache=True, error_model="numpy")
+def _angle(p, side, q):  # type: ignore[no-untyped-def]
+    """The angle from p to q, ``side`` being p turned by 90 degrees."""
+    ahead = side[0] * q[0] + side[1] * q[1] + side[2] * q[2]
+    return atan2(ahead, p[0] * q[0] + p[1] * q[1] + p[2] * q[2])
