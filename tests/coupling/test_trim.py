@@ -124,9 +124,9 @@ def test_finds_a_start_far_outside_of_the_operating_range() -> None:
     assert idle.pitch_angles(0.0) == pytest.approx(np.full(3, 90.0 * DEG))
 
 
-def test_relaxation_finds_the_balance_of_a_stiff_and_a_soft_loop() -> None:
-    """Loads -0.9 and 0.8 of those that bend the shape: plain passes hardly converge."""
-    for gain in (-0.9, 0.8, -1.5):
+def test_relaxation_finds_the_balance_of_loads_that_swing() -> None:
+    """Loads that answer with -0.9 or -1.5 of their change: plain passes do not settle."""
+    for gain in (-0.9, 0.4, -1.5):
         relaxed, loads = Relaxed(), np.zeros((1, 6))
         for _ in range(12):
             loads = 1.0 + gain * relaxed(loads)

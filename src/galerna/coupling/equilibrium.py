@@ -216,8 +216,9 @@ class Relaxed:
         error = loads - self._used
         if self._last is not None:
             change = error - self._last
-            share = -self._share * float((self._last * change).sum() / (change * change).sum())
-            self._share = min(max(share, SMALLEST_SHARE), LARGEST_SHARE)
+            if size := float((change * change).sum()):
+                share = -self._share * float((self._last * change).sum()) / size
+                self._share = min(max(share, SMALLEST_SHARE), LARGEST_SHARE)
         self._last = error
         self._used = self._used + self._share * error
         return self._used
