@@ -42,6 +42,10 @@ def test_a_plain_case_raises_none():
         ({"time_step_s": 0.2}, "10.99 deg in a time step of 0.2 s"),  # 6 deg/s per rpm
         ({"duration_s": 2.007}, "not a whole number of steps of 0.02 s: the run ends at 2 s"),
         ({"turbine": "nrel5mw_oc3"}, "the platform is held still: no hydrodynamics yet"),
+        (
+            {"structure": "flexible", "time_step_s": 0.17, "duration_s": 1.7},
+            "edgewise bending of the blades takes 0.948 s, 5.6 time steps",
+        ),
         (steady(2.0), "2 m/s is below cut-in, 3 m/s"),
         (steady(26.0), "26 m/s is above cut-out, 25 m/s"),
     ],
@@ -54,6 +58,8 @@ def test_each_doubt_is_said_alone(changes, expected):
 @pytest.mark.parametrize(
     "changes",
     [
+        {"structure": "flexible", "time_step_s": 0.15, "duration_s": 1.5},
+        {"structure": {"blades": "rigid"}, "time_step_s": 0.18, "duration_s": 1.8},
         {"operation": operation(rotor_speed_rpm=18.0)},  # 1.49 times rated
         {"operation": operation(pitch_deg=-10.0)},
         {"operation": operation(pitch_deg=100.0)},

@@ -9,6 +9,7 @@ import numpy as np
 from galerna.aero.vortex.options import VortexLatticeOptions
 from galerna.case import Case
 from galerna.kinematics import PrescribedOperation
+from galerna.structure.options import StructureOptions
 from galerna.turbine.model import Turbine
 from galerna.units import DEG, RPM
 
@@ -35,6 +36,8 @@ def doubts(
         )
     if isinstance(case.aerodynamics, VortexLatticeOptions) and not case.aerodynamics.decambering:
         yield from _about_attached_flow(turbine, operation.rotor_speed.value, mean_wind)
+    if case.moves and case.structure is not None:
+        yield from _about_step(turbine, case.structure, case.time_step_s)
     if turbine.platform is not None and case.base_motion is None:
         yield "the platform is held still: no hydrodynamics yet"
 
@@ -56,6 +59,20 @@ def _about_speed(turbine: Turbine, speeds: np.ndarray, time_step: float) -> Iter
         yield (
             f"the rotor turns {turn:.4g} deg in a time step of {time_step:g} s: "
             f"above {LARGEST_TURN:g} deg the loads over a turn are coarse"
+        )
+
+
+def _about_step(turbine: Turbine, parts: StructureOptions, time_step: float) -> Iterator[str]:
+    """The bending that a step resolves least, where that is too little."""
+    if parts.blades == "rigid" and parts.tower == "rigid":
+        return
+    from galerna.coupling.step_size import STEPS_PER_PERIOD, bending_periods
+
+    name, period = min(bending_periods(turbine, parts).items(), key=lambda item: item[1])
+    if period < STEPS_PER_PERIOD * time_step * (1.0 - 1e-9):
+        yield (
+            f"the first {name} takes {period:.3g} s, {period / time_step:.2g} time steps: it is "
+            f"hardly followed; time_step_s: {period / (2 * STEPS_PER_PERIOD):.1g} would do"
         )
 
 
