@@ -24,8 +24,8 @@ GROUND = MirrorPlane(np.array([0.0, 0.0, 1.0]), np.array([0.0, 0.0, 2.0]))
 
 @pytest.fixture
 def always_clusters(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(field_module, "_PANEL", 0.0)
-    monkeypatch.setattr(field_module, "_POINT", 0.0)
+    monkeypatch.setattr(field_module, "_CLUSTERS", {})
+    monkeypatch.setattr(field_module, "_IN_DOUBLE", (0.0, 0.0))
 
 
 @pytest.mark.parametrize("error", [None, 1e-3])
