@@ -115,8 +115,11 @@ def _place(
 def _correct(
     variation: Array, inverse: Array, factors: Array, residual: Array, wrench: Array,
     absolute: Array, relative: float, increment: Array, v: Array, v_rate: Array, auxiliary: Array,
-) -> float:  # fmt: skip
-    """Add Newton's variation to the trial; the change over its tolerance, the worst of kinds.
+    before: Array,
+) -> tuple[float, float]:  # fmt: skip
+    """Add Newton's variation to the trial; the error left over its tolerance, and the contraction.
+
+    Both are the worst of all kinds, by the changes ``before`` (6,) and now, which replace them.
 
     The kinds are m, rad, m/s, rad/s, N and N m, each with its tolerance in ``absolute`` (6,)
     and ``relative`` to the largest increment, velocity or ``wrench`` (m,12) of its kind; what a
@@ -128,7 +131,7 @@ def _correct(
         for k in range(6):
             increment[i, k] += change[k]
             if not abs(increment[i, k]) < FARTHEST:
-                return np.inf
+                return np.inf, 1.0
             v[i, k] += factors[0] * change[k]
             v_rate[i, k] += factors[1] * change[k]
             auxiliary[i, k] += factors[2] * change[k]
@@ -142,7 +145,15 @@ def _correct(
             kind = 4 + (k // 3) % 2
             size[kind] = max(size[kind], abs(wrench[e, k]))
     change_size[2:4] = factors[0] * change_size[:2]
-    return np.max(change_size / (absolute + relative * size))
+    left, worst = 0.0, 0.0
+    for kind in range(6):
+        contraction = min(change_size[kind] / before[kind], 0.9) if before[kind] > 0.0 else 0.5
+        error = change_size[kind] * contraction / (1.0 - contraction)
+        error /= absolute[kind] + relative * size[kind]
+        before[kind] = change_size[kind]
+        if error > left:
+            left, worst = error, contraction
+    return left, worst
 
 
 @njit(cache=True, error_model="numpy")
@@ -177,7 +188,7 @@ class Trial:
         )
         self._scale = per_acceleration * self._system.mass_scale + self._system.stiffness_scale
         self._tangents = np.zeros((3, n, 6, 6))  # inverse, of velocity, of acceleration
-        self._before: float = np.inf
+        self._before = np.zeros(6)  # changes of the last correction, by kind
         self._fresh = False  # whether the tangent need not be made anew
         self._last: tuple[PairAnswer, Array, Array] | None = None
         self._residual = np.zeros((n, 6))
@@ -191,17 +202,16 @@ class Trial:
         state, tolerance = self.state, self._tolerance
         state.multiplier += multiplier
         state.constraint_multiplier += constraint
-        error = _correct(
+        error, contraction = _correct(
             variation, self._tangents[0], self._factors, balance.residual,
             balance.pairs.node_wrench, tolerance.absolute, tolerance.relative,
-            self._increment, state.velocity, state.acceleration, state.auxiliary,
+            self._increment, state.velocity, state.acceleration, state.auxiliary, self._before,
         )  # fmt: skip
         if not np.isfinite(error):
             raise self.failure()
-        contraction = min(error / self._before, 0.9) if np.isfinite(self._before) else 0.5
-        self._fresh = contraction < REFRESH or not np.isfinite(self._before)
-        self._before, self._last = error, (balance.pairs, variation, multiplier)
-        if error * contraction / (1.0 - contraction) <= 1.0:
+        self._fresh = contraction < REFRESH or self._last is None
+        self._last = balance.pairs, variation, multiplier
+        if error <= 1.0:
             return True
         self._place()
         return False
