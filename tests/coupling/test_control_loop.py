@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -81,6 +83,18 @@ def test_demands_hold_for_the_sample_time(own):
         for _ in range(10):
             sim.step()
     assert notes.times == pytest.approx([0.0, 0.15, 0.3, 0.45])
+
+
+@pytest.mark.parametrize(("step", "steps_a_sample"), [(0.00625, 1), (0.025, 2)])
+def test_the_clock_of_samples_does_not_drift_in_a_long_run(step, steps_a_sample, monkeypatch):
+    """A sum of 93,000 steps of 0.00625 s is off by more than the clock's tolerance."""
+    notes, steps = Notes(step * steps_a_sample), 95_000
+    with galerna.start(case(control={"model": "external"}), notes) as sim:
+        loop = sim.simulation.commander
+        monkeypatch.setattr(loop, "measure", lambda time: SimpleNamespace(time=time))
+        for n in range(steps):
+            loop._demanded(n * step)
+    assert notes.times == [n * step for n in range(0, steps, steps_a_sample)]
 
 
 def test_a_sample_time_between_steps_is_refused():

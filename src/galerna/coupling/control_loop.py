@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from math import floor
 from typing import Any
 
 import numpy as np
@@ -134,8 +135,7 @@ class ControlLoop:
         """What holds for the next step."""
         if time >= self._next - CLOCK_TOLERANCE:
             self.demands = self._checked(ask(self.controller, self.measure(time)), time)
-            late = not self._next + self._sample_time > time
-            self._next = (time if late else self._next) + self._sample_time
+            self._next = self._after(time)
         if not self._once:
             return self.demands
         once, self._once = self._once, {}
@@ -144,6 +144,11 @@ class ControlLoop:
             self.controller.hold(demands)
             self.demands = demands
         return demands
+
+    def _after(self, time: float) -> float:
+        """When the controller is asked next: so many sample times from 0, no sum that drifts."""
+        sample = self._sample_time
+        return (floor((time + CLOCK_TOLERANCE) / sample) + 1) * sample if sample else time
 
     def _checked(self, demands: Demands, time: float) -> Demands:
         """The demands with a pitch for every blade; ControllerError where that cannot be."""
