@@ -26,7 +26,7 @@ MOTIONS = {
     "±2° at 0.068 Hz": (VERMILION, ("pitch_deg", 4.0, 2.0 * FREQUENCY)),
 }
 SPECTRA = ((FORE_AFT, "Tower top, fore-aft [m²/Hz]"), (TIP, "Tip, out of plane [m²/Hz]"),
-           (OUT, "Aerodynamic root moment, out of plane [(N m)²/Hz]"))  # fmt: skip
+           (OUT, "Root moment, out of plane [(N m)²/Hz]"))  # fmt: skip
 
 
 def base_motion() -> Figure:
