@@ -47,6 +47,26 @@ def test_no_actuator_breaks_its_limits(options):
     assert pitch == pytest.approx([0.1, 0.15, -0.02], abs=1e-6)
 
 
+@pytest.mark.parametrize("options", [{}, {"time_constant": 0.2}, {"frequency": 20.0}])
+@pytest.mark.parametrize("demand", [0.1, 0.3])
+def test_a_blade_beyond_its_limits_comes_back_at_the_rate(options, demand):
+    actuator = PitchActuator(lowest=-0.02, highest=0.15, rate=0.1, **options)
+    pitch, dt = np.array([0.2]), 0.02
+    for _ in range(200):
+        after = actuator.after(pitch, np.array([demand]), dt)
+        assert np.abs(after - pitch).max() <= 0.1 * dt + 1e-15
+        pitch = after
+    assert pitch == pytest.approx([min(demand, 0.15)], abs=1e-6)
+
+
+def test_an_overdamped_lag_may_be_as_stiff_as_it_likes():
+    actuator = PitchActuator(frequency=1000.0, damping_ratio=5.0)
+    slow = 1000.0 * (5.0 - np.sqrt(24.0))  # rad/s, of the two decays
+    after = actuator.after(np.zeros(1), np.array([0.1]), 0.05)
+    assert after[0] == pytest.approx(0.1 * (1.0 - np.exp(-slow * 0.05)), rel=0.02)
+    assert actuator.after(np.zeros(1), np.array([0.1]), 1.0)[0] == pytest.approx(0.1)
+
+
 def test_the_second_order_lag_resumes_with_its_speed():
     one, other = (PitchActuator(frequency=2.0) for _ in range(2))
     pitch = one.after(np.zeros(3), DEMAND, 0.1)

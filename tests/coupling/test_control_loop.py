@@ -171,6 +171,12 @@ def test_a_start_with_the_whole_machine():
     assert np.all(np.diff(result.rotor_speed.values[20:]) > 0.0)
 
 
+def test_a_rotor_at_rest_is_feathered_as_far_as_its_actuators_go():
+    control = {"model": "baseline", "mode": "idling", "pitch_actuator": {"highest_deg": 60}}
+    result = galerna.run(case(duration_s=0.5, control=control))
+    assert result.pitch.values == pytest.approx(60.0 * DEG, abs=1e-4)
+
+
 def test_a_parked_rotor_stands_still_on_its_shaft():
     structure = {**RIGID, "shaft": "flexible"}
     control = {"model": "baseline", "mode": "parked"}

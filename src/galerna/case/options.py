@@ -269,7 +269,7 @@ class Case(Block):
         if self.operation is not None:
             return self.operation
         if isinstance(self.control, BaselineOptions) and self.control.at_rest:
-            return Operation(rotor_speed_rpm=0.0, pitch_deg=90.0)
+            return Operation(rotor_speed_rpm=0.0, pitch_deg=self.control.feather_deg)
         return Operation(operating_point="steady")
 
     @property

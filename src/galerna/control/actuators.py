@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import cos, cosh, exp, inf, sin, sinh, sqrt
+from math import cos, exp, inf, sin, sqrt
 
 import numpy as np
 
@@ -17,7 +17,8 @@ class PitchActuator:
     ``time_constant`` s is the first order's; with ``frequency`` rad/s and ``damping_ratio`` it is
     angle'' = frequency^2 (demand - angle) - 2 damping_ratio frequency angle'. Without either the
     blades follow at once. Both are exact for a demand that is held. ``lowest`` and ``highest``
-    rad, ``rate`` rad/s. Raises InputError for figures that no actuator has.
+    rad, which a blade that begins beyond them comes back to, ``rate`` rad/s. Raises InputError for
+    figures that no actuator has.
     """
 
     def __init__(
@@ -44,10 +45,11 @@ class PitchActuator:
 
     def after(self, pitch: Array, demand: Array, dt: float) -> Array:
         """Pitch (b,) rad ``dt`` s later under a demand (b,) held for that time."""
-        step, speed = self._linear(pitch - demand, dt)
+        step, speed = self._linear(pitch - np.clip(demand, self.lowest, self.highest), dt)
         limit = self.rate * dt
         limited = np.clip(step, -limit, limit)
-        moved = np.clip(pitch + limited, self.lowest, self.highest)
+        lowest, highest = np.minimum(self.lowest, pitch), np.maximum(self.highest, pitch)
+        moved = np.clip(pitch + limited, lowest, highest)
         if self.frequency is not None:
             speed = np.where(limited == step, speed, np.sign(limited) * self.rate)
             self._speed = np.where(moved == pitch + limited, speed, 0.0)
@@ -75,22 +77,18 @@ class PitchActuator:
 
 def free_motion(frequency: float, damping: float, dt: float) -> tuple[float, float, float, float]:
     """[[a, b], [c, d]] that takes offset and speed of an oscillator ``dt`` s on, row by row."""
-    decay = exp(-damping * frequency * dt)
+    decay = damping * frequency
     root = frequency * sqrt(abs(1.0 - damping**2))
     turn = root * dt
     if turn < 1e-6:  # critical damping
-        wave, rise = 1.0, dt
+        wave, rise = exp(-decay * dt), exp(-decay * dt) * dt
     elif damping < 1.0:
-        wave, rise = cos(turn), sin(turn) / root
-    else:
-        wave, rise = cosh(turn), sinh(turn) / root
-    pull = damping * frequency * rise
-    return (
-        decay * (wave + pull),
-        decay * rise,
-        -decay * frequency**2 * rise,
-        decay * (wave - pull),
-    )
+        wave, rise = exp(-decay * dt) * cos(turn), exp(-decay * dt) * sin(turn) / root
+    else:  # cosh and sinh alone would overflow
+        slow, fast = exp((root - decay) * dt), exp(-(root + decay) * dt)
+        wave, rise = 0.5 * (slow + fast), 0.5 * (slow - fast) / root
+    pull = decay * rise
+    return wave + pull, rise, -(frequency**2) * rise, wave - pull
 
 
 def limited(value: float, before: float, rate: float, dt: float) -> float:

@@ -149,6 +149,11 @@ class BaselineOptions(ControlOptions):
         """Whether the mode begins with a rotor that stands still, blades feathered."""
         return self.mode in ("start_up", "idling", "parked")
 
+    @property
+    def feather_deg(self) -> float:
+        """The pitch of a rotor at rest: feathered, as far as the actuators go."""
+        return min(90.0, self.pitch_actuator.highest_deg)
+
 
 class DisconOptions(ControlOptions):
     """A controller in a Bladed-style library, run in a process of its own."""

@@ -40,7 +40,6 @@ from galerna.turbine.model import Turbine
 from galerna.units import DEG
 
 TURN = 0.02  #: rad by which the rotor turns between the shapes whose difference is the velocity
-FEATHER = 90.0 * DEG  #: in which a machine stands that does not produce
 LONGEST = 0.05  #: s, for the same
 Describe = Callable[[PrescribedOperation], TurbineOptions]
 
@@ -67,7 +66,7 @@ class Trim:
         """
         control = self._settings.control
         if isinstance(control, BaselineOptions) and control.at_rest:
-            return 0.0, FEATHER
+            return 0.0, control.feather_deg * DEG
         hub = self._wind.hub_velocity(0.0)
         wind_speed = float(np.hypot(hub[0], hub[1]))
         error = float(operation.yaw.value[0] - np.arctan2(hub[1], hub[0]))
