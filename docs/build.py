@@ -1,7 +1,7 @@
 """Make everything that is generated here: ``python -m docs.build [PART ...]``.
 
-Parts: conventions, case, channels, turbines, vortex_sections, vortex_wings, vortex_rotors, demo,
-validation, benchmarks; all where none is given.
+Parts: conventions, case, channels, turbines, vortex_sections, vortex_wings, vortex_rotors, machine,
+demo, validation, benchmarks; all where none is given.
 """
 
 from __future__ import annotations
