@@ -17,7 +17,7 @@ from galerna.case import Case, LoadedCase, load
 from galerna.checkpoints import Checkpoint
 from galerna.cite import references
 from galerna.compiling import Report
-from galerna.errors import GalernaError, InputError
+from galerna.errors import ControllerError, GalernaError, InputError
 from galerna.machine import Machine, build_machine
 from galerna.results.earlier import EarlierRecords
 from galerna.results.log import Layout
@@ -98,7 +98,7 @@ def resumed_machine(result: Path, duration: float | None = None) -> tuple[Machin
     machine = build_machine(checkpoint.case(duration))
     try:
         checkpoint.give(machine)
-    except InputError:
+    except GalernaError:
         machine.close()
         raise
     return machine, checkpoint
@@ -172,7 +172,8 @@ class _Run:
     def _stopped(self, error: BaseException) -> None:
         """Leave a readable result, a checkpoint, and a note on where they are."""
         reason = str(error).splitlines()[0] if str(error) else "interrupted"
-        self.checkpoints.save()
+        with suppress(ControllerError):  # it cannot say what it remembers: ``error`` tells
+            self.checkpoints.save()
         with suppress(InputError):  # a full disk: the log holds the records
             self.result.finish(f"stopped at {self.machine.simulation.time:.6g} s: {reason}")
         path = self.result.path

@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from importlib import import_module
 from importlib.util import module_from_spec, spec_from_file_location
+from math import inf
 from pathlib import Path
 from traceback import extract_tb
 from types import ModuleType
 from typing import Any
 
+import numpy as np
+
+from galerna.contract import Array, Channel
 from galerna.control.interface import Controller, Demands, Measurements
 from galerna.errors import ControllerError, GalernaError, InputError, did_you_mean
 from galerna.turbine.model import Turbine
@@ -75,20 +80,74 @@ def _made(place: str, make: Callable[[Turbine], Any], turbine: Turbine) -> Any:
         ) from error
 
 
-def ask(controller: Controller, measured: Measurements) -> Demands:
-    """The demands of a controller; ControllerError, which names it and the time, where it fails."""
-    where = controller_name(controller)
+@contextmanager
+def blamed(controller: object, time: float | None = None) -> Iterator[None]:
+    """ControllerError, which names a controller and the time, for what it raises inside."""
     try:
-        demands = controller.demands(measured)
+        yield
     except GalernaError:
         raise
     except Exception as error:
-        raise ControllerError(where, f"raised {_told(error)}", time=measured.time) from error
+        where = controller_name(controller)
+        raise ControllerError(where, f"raised {_told(error)}", time=time) from error
+
+
+def ask(controller: Controller, measured: Measurements) -> Demands:
+    """The demands of a controller; ControllerError, which names it and the time, where it fails."""
+    with blamed(controller, measured.time):
+        demands = controller.demands(measured)
     if not isinstance(demands, Demands):
         what = f"answered with a {type(demands).__name__}"
         hint = "return galerna.control.interface.Demands(pitch, generator_torque)"
-        raise ControllerError(where, what, hint, measured.time)
+        raise ControllerError(controller_name(controller), what, hint, measured.time)
     return demands
+
+
+def sample_time_of(controller: object) -> float:
+    """Its own time s between calls, 0 where it has none; InputError for what is no time."""
+    own = getattr(controller, "sample_time", None) or 0.0
+    if not isinstance(own, int | float | np.number) or not 0.0 <= own < inf:
+        where = controller_name(controller)
+        raise InputError(where, f"its sample_time is {own!r}", "give seconds, or none")
+    return float(own)
+
+
+def channels_of(controller: object) -> tuple[Channel, ...]:
+    """The channels of a controller; InputError where they are none, or nothing records them."""
+    with blamed(controller):
+        found = tuple(getattr(controller, "channels", ()))
+    where, hint = controller_name(controller), "see galerna.contract.Channel"
+    for channel in found:
+        if not isinstance(channel, Channel):
+            raise InputError(where, f"its channels have a {type(channel).__name__}", hint)
+    if found and not callable(getattr(controller, "record", None)):
+        raise InputError(where, "has channels and no method record()")
+    return found
+
+
+def record_of(
+    controller: object, channels: Sequence[Channel], time: float
+) -> Mapping[str, float | Array]:
+    """The values of a controller's own channels now; ControllerError where they are none."""
+    if not channels:
+        return {}
+    with blamed(controller, time):
+        values = controller.record()  # type: ignore[attr-defined]
+        return {channel.name: values[channel.name] for channel in channels}
+
+
+def state_of(controller: object, time: float) -> dict[str, np.ndarray]:
+    """What a controller remembers, as arrays; ControllerError for what cannot be saved."""
+    if not hasattr(controller, "state"):
+        return {}
+    with blamed(controller, time):
+        found = {str(name): np.asarray(value) for name, value in controller.state().items()}
+    for name, value in found.items():
+        if value.dtype.hasobject:
+            what = f"its state {name!r} cannot be saved"
+            hint = "numbers and arrays of them can be"
+            raise ControllerError(controller_name(controller), what, hint, time)
+    return found
 
 
 def controller_name(controller: object) -> str:

@@ -16,7 +16,15 @@ from galerna.control.brake import Brake
 from galerna.control.drivetrain import PowerTrain
 from galerna.control.external import ExternalController
 from galerna.control.interface import Controller, Demands, Measurements
-from galerna.control.python_controller import ask, controller_name
+from galerna.control.python_controller import (
+    ask,
+    blamed,
+    channels_of,
+    controller_name,
+    record_of,
+    sample_time_of,
+    state_of,
+)
 from galerna.control.yawing import wrapped
 from galerna.coupling.flexible import FlexibleMachine
 from galerna.errors import ControllerError
@@ -61,10 +69,10 @@ class ControlLoop:
         self.machine, self.controller = machine, controller
         self._train, self._actuator, self._hub_wind = train, actuator, hub_wind
         self._torque_lag, self._brake = torque_lag, Brake(held_inertia)
-        own: float | None = getattr(controller, "sample_time", None)
-        self._sample_time = sample_time or own or 0.0
+        self._sample_time = sample_time or sample_time_of(controller)
         self.coordinates: Mapping[str, Array] = {}
-        self.channels: tuple[Channel, ...] = (*CHANNELS, *getattr(controller, "channels", ()))
+        self._own = channels_of(controller)
+        self.channels: tuple[Channel, ...] = (*CHANNELS, *self._own)
         self._next = -np.inf
         self.demands = Demands(machine.pitch_angles(0.0), 0.0)
         self.torque = np.nan  #: N m that the generator gives
@@ -188,7 +196,6 @@ class ControlLoop:
         torque, speed, demands = self._torque_now, self.machine.drive_speed, self.demands
         electrical = self._train.electrical_power(torque, speed)
         measured = self.measure(self.machine.accepted.time)
-        own: Callable[[], Mapping[str, float | Array]] = getattr(self.controller, "record", dict)
         return {
             "generator_speed": self._train.generator_speed(speed),
             "generator_torque": torque,
@@ -199,7 +206,7 @@ class ControlLoop:
             "brake_torque": self._braking,
             "yaw_rate_demand": demands.yaw_rate,
             "yaw_error": measured.yaw_error,
-            **own(),
+            **record_of(self.controller, self._own, measured.time),
         }
 
     @property
@@ -222,7 +229,7 @@ class ControlLoop:
             **self._actuator.state(),
             **self._brake.state(),
         }
-        remembered: dict[str, np.ndarray] = getattr(self.controller, "state", dict)()
+        remembered = state_of(self.controller, self.machine.accepted.time)
         return {**own, **{f"controller/{name}": value for name, value in remembered.items()}}
 
     def restore(self, state: Mapping[str, np.ndarray]) -> None:
@@ -235,7 +242,8 @@ class ControlLoop:
         prefix = "controller/"
         remembered = {k.removeprefix(prefix): v for k, v in state.items() if k.startswith(prefix)}
         if hasattr(self.controller, "restore"):
-            self.controller.restore(remembered)
+            with blamed(self.controller):
+                self.controller.restore(remembered)
 
     def close(self) -> None:
         """Let go of what the controller holds, where it holds something."""
