@@ -246,8 +246,10 @@ def test_a_closed_controller_begins_again_where_it_was(make):
 @pytest.mark.parametrize("word", ["pass", "hang"])
 def test_no_process_is_left_when_the_simulation_is_killed(stub, tmp_path, word):
     (tmp_path / "word.in").write_text(f"{word} 0.05\n")
+    (tmp_path / "temporary").mkdir()
     script = f"""
 import sys; sys.path.insert(0, {str(Path(__file__).parent)!r})
+import tempfile; tempfile.tempdir = {str(tmp_path / "temporary")!r}
 import test_discon as t
 from pathlib import Path
 options = t.DisconOptions(library={str(stub)!r}, input_file="word.in")
@@ -266,6 +268,7 @@ import time; time.sleep(60)
     parent.stdout.close()
     assert gone(child)
     assert calls(tmp_path) == ([0, 1, -1] if word == "pass" else [0, 1])
+    assert not list((tmp_path / "temporary").iterdir())
 
 
 def controller_with(folder: Path, **options) -> DisconController:

@@ -11,6 +11,7 @@ from __future__ import annotations
 import ctypes
 import json
 import os
+import shutil
 import signal
 import struct
 import sys
@@ -36,8 +37,8 @@ class Watch:
     this process, which may end before the simulation does.)
     """
 
-    def __init__(self, parent: int, timeout: float) -> None:
-        self._parent, self._timeout = parent, timeout
+    def __init__(self, parent: int, timeout: float, temporary: str) -> None:
+        self._parent, self._timeout, self._temporary = parent, timeout, temporary
         self._began: float | None = None
         threading.Thread(target=self._run, daemon=True).start()
 
@@ -54,6 +55,7 @@ class Watch:
             if began is not None and time.monotonic() - began > self._timeout:
                 os._exit(HUNG)
             if os.name == "posix" and os.getppid() != self._parent:
+                discard(self._temporary)
                 os._exit(ORPHANED)
 
 
@@ -150,7 +152,15 @@ def main(text: str) -> None:
         if hasattr(signal, "alarm"):
             signal.setitimer(signal.ITIMER_REAL, 0.0)
     pipes.answer(LOADED, b"", b"")
-    serve(library, setup, pipes, Watch(setup["parent"], setup["timeout"]))
+    temporary = setup["temporary"]
+    serve(library, setup, pipes, Watch(setup["parent"], setup["timeout"], temporary))
+    discard(temporary)
+
+
+def discard(folder: str) -> None:
+    """Remove a folder that nobody wants, where there is one: the other process may be gone."""
+    if folder:
+        shutil.rmtree(folder, ignore_errors=True)
 
 
 if __name__ == "__main__":

@@ -134,6 +134,7 @@ class LibraryProcess:
                 "initial": setup.initial,
                 "constant": setup.constant,
                 "timeout": setup.timeout,
+                "temporary": str(self._folder) if self._temporary else "",
                 "parent": os.getpid(),
             }
         )
