@@ -51,6 +51,18 @@ def test_wake_and_planes_are_written_when_they_are_due(tmp_path):
     assert int(piece.get("NumberOfPolys")) == bound + wake
 
 
+def test_the_flow_of_a_run_that_goes_on_is_left_alone(tmp_path):
+    """Two runs into one result: the second is refused before it removes anything."""
+    galerna.run(CASE, tmp_path / "a.nc")
+    before = sorted(path.name for path in (tmp_path / "a_flow").iterdir())
+    fcntl = pytest.importorskip("fcntl")
+    with (tmp_path / "a.nc.log").open("ab") as log:
+        fcntl.flock(log, fcntl.LOCK_EX)
+        with pytest.raises(InputError, match="another run is writing this result"):
+            galerna.run(CASE, tmp_path / "a.nc", overwrite=True)
+    assert sorted(path.name for path in (tmp_path / "a_flow").iterdir()) == before
+
+
 def test_an_earlier_flow_is_not_replaced_unless_told(tmp_path):
     galerna.run(CASE, tmp_path / "a.nc")
     (tmp_path / "a.nc").unlink()

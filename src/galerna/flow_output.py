@@ -41,13 +41,16 @@ class FlowWriter(Callback):
         self._model, self._options, self._folder = model, options, folder
         planes = {plane.name: Plane.of(plane) for plane in options.planes}
         names = [*(["wake"] if options.wake else []), *planes]
-        if since is None:
-            _clear(folder, names, overwrite)
+        self._old = _earlier(folder, names) if since is None else []
+        if self._old and not overwrite:
+            hint = "name another result with --output, or replace it with --overwrite"
+            raise InputError(str(self._old[0]), "pictures of a flow stand here already", hint)
         self._series = {name: Series(folder / f"{name}.pvd", since) for name in names}
         self._planes = planes
 
     def start(self, simulation: Simulation, end: float) -> None:
-        """Make the folder, and know the steps between two pictures."""
+        """Make room, now that no other run writes here; know the steps between two pictures."""
+        _remove(self._old)
         self._folder.mkdir(parents=True, exist_ok=True)
         self._every = max(round(self._options.interval_s / simulation.time_step), 1)
 
@@ -78,13 +81,13 @@ def wake_patches(model: VortexLattice) -> list[Patch]:
     ]
 
 
-def _clear(folder: Path, names: list[str], overwrite: bool) -> None:
-    """Remove the series of an earlier run, if that is allowed."""
-    old = [path for name in names for path in folder.glob(f"{name}.pvd")]
-    if old and not overwrite:
-        hint = "name another result with --output, or replace it with --overwrite"
-        raise InputError(str(old[0]), "pictures of a flow stand here already", hint)
-    for index in old:
-        for path in folder.glob(f"{index.stem}_[0-9]*.vtp"):
+def _earlier(folder: Path, names: list[str]) -> list[Path]:
+    """The series of an earlier run."""
+    return [path for name in names for path in folder.glob(f"{name}.pvd")]
+
+
+def _remove(series: list[Path]) -> None:
+    for index in series:
+        for path in index.parent.glob(f"{index.stem}_[0-9]*.vtp"):
             path.unlink()
         index.unlink()

@@ -68,6 +68,22 @@ def test_a_series_names_its_files_and_their_times(tmp_path):
     assert len(series) == 2
 
 
+def test_a_series_that_is_cut_short_stays_as_it_was(tmp_path, monkeypatch):
+    series = Series(tmp_path / "wake.pvd")
+    series.add(0.5, [patch(1, 1)])
+    before = (tmp_path / "wake.pvd").read_bytes()
+
+    def short(tree, path, **_):
+        path.write_bytes(before[: len(before) // 2])
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(ElementTree.ElementTree, "write", short)
+    with pytest.raises(InputError, match="No space left"):
+        series.add(1.0, [patch(1, 1)])
+    assert (tmp_path / "wake.pvd").read_bytes() == before
+    assert not list(tmp_path.glob("*.unfinished"))
+
+
 def test_a_file_that_cannot_be_written_is_an_input_error(tmp_path):
     with pytest.raises(InputError, match="cannot be written"):
         write_patches(tmp_path / "no_such_folder" / "a.vtp", [patch(1, 1)])

@@ -6,6 +6,7 @@ UInt64 (VTK user's guide, "VTK File Formats"). No library is needed to write so 
 
 from __future__ import annotations
 
+import os
 from base64 import b64encode
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -114,7 +115,11 @@ def _add_arrays(
 
 
 def _write(file: ElementTree.Element, path: Path) -> None:
+    """Write a file, whole or not at all: a run that is killed leaves series that can be read."""
+    unfinished = path.with_name(path.name + ".unfinished")
     try:
-        ElementTree.ElementTree(file).write(path, encoding="utf-8", xml_declaration=True)
+        ElementTree.ElementTree(file).write(unfinished, encoding="utf-8", xml_declaration=True)
+        os.replace(unfinished, path)
     except OSError as error:
+        unfinished.unlink(missing_ok=True)
         raise InputError(str(path), f"cannot be written: {error.strerror}") from error
