@@ -178,3 +178,27 @@ def test_a_step_that_finds_no_balance_names_time_part_and_frame() -> None:
     with pytest.raises(ConvergenceError, match=r"structure, .*blade\d.* of its span at t = ") as it:
         Simulation(machine, {"load": load}, 0.02, halvings=1).advance()
     assert it.value.time > 0.0
+
+
+class Drag(Push):
+    """Damping that the structure's tangent knows nothing of, N s/m at each station."""
+
+    def __init__(self, damping: float) -> None:
+        super().__init__()
+        self.damping, self.calls = damping, 0
+
+    def loads(self, time, motion) -> Loads:
+        self.calls += 1
+        loads = super().loads(time, motion)
+        loads.force -= self.damping * motion.velocity
+        return loads
+
+
+@pytest.mark.parametrize("damping", [1000.0, 4000.0])
+def test_damping_that_outweighs_the_blades_inertia_in_a_step_converges(damping: float) -> None:
+    drag = Drag(damping)
+    machine = FlexibleMachine(NREL, [drag.stations], TurbineOptions(blade_elements=6))
+    simulation = Simulation(machine, {"drag": drag}, 0.02)
+    for _ in range(25):
+        simulation.advance()
+    assert drag.calls < 8 * 25

@@ -23,6 +23,7 @@ from .forces import Forces
 from .frames import exp_se3, inverse_tangents
 from .initial import check_positions
 from .pairs import PairAnswer, carried_on
+from .quasi_newton import Secants
 from .system import Balance, LoadFunction, State, System
 
 
@@ -191,6 +192,7 @@ class Trial:
         self._before = np.zeros(6)  # changes of the last correction, by kind
         self._fresh = False  # whether the tangent need not be made anew
         self._last: tuple[PairAnswer, Array, Array] | None = None
+        self._secants = Secants(6 * n)
         self._residual = np.zeros((n, 6))
         self._predict(s, dt)
         self._place()
@@ -198,7 +200,7 @@ class Trial:
     def correct(self, forces: Forces) -> bool:
         """Correct the trial under ``forces``; raises ConvergenceError where it diverges."""
         balance = self._balance(forces)
-        variation, multiplier, constraint = self._system.correction(balance)
+        variation, multiplier, constraint = self._advised(*self._system.correction(balance))
         state, tolerance = self.state, self._tolerance
         state.multiplier += multiplier
         state.constraint_multiplier += constraint
@@ -215,6 +217,16 @@ class Trial:
             return True
         self._place()
         return False
+
+    def _advised(
+        self, variation: Array, multiplier: Array, constraint: Array
+    ) -> tuple[Array, Array, Array]:
+        """Newton's correction with what the step's earlier ones tell of the loads."""
+        parts = variation, multiplier, constraint
+        step = self._secants.step(np.concatenate([part.ravel() for part in parts]))
+        ends = np.cumsum([part.size for part in parts])
+        first, second, third = np.split(step, ends[:-1])
+        return first.reshape(variation.shape), second.reshape(multiplier.shape), third
 
     def _balance(self, forces: Forces) -> Balance:
         """The residual at the trial; the tangent of a fast iteration stays what it was."""
