@@ -107,6 +107,15 @@ def test_a_resumed_run_gives_the_bits_of_an_unbroken_one(tmp_path, case, at):
     assert [p.name for p in tmp_path.iterdir()] == ["a.nc"]  # no checkpoint where all is done
 
 
+@pytest.mark.parametrize(
+    "outputs", [{"start_s": 1.0}, {"interval_s": 0.15}], ids=["before the first", "between two"]
+)
+def test_a_run_goes_on_from_between_its_records(tmp_path, outputs):
+    case = {**STEADY, "outputs": outputs}
+    stopped(case, tmp_path / "a.nc", 0.5)
+    assert_same(galerna.resume(tmp_path / "a.nc"), galerna.run(case))
+
+
 def test_a_run_may_be_stopped_and_resumed_again_and_again(tmp_path):
     stopped(RIGID, tmp_path / "a.nc", 0.5)
     with pytest.raises(KeyboardInterrupt):

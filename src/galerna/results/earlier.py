@@ -54,5 +54,5 @@ class EarlierRecords:
         rows = np.zeros((len(dataset["time"]), layout.width))
         rows[:, 0] = dataset["time"]
         for name, place in layout.slices().items():
-            rows[:, place] = dataset[name].values.reshape(len(rows), -1)
+            rows[:, place] = dataset[name].values.reshape(rows[:, place].shape)
         return rows
