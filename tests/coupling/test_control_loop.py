@@ -206,6 +206,35 @@ def test_individual_pitch_takes_the_shear_off_the_roots():
     assert 0.1 * DEG < spread < 10.0 * DEG
 
 
+class Counts(Notes):
+    """Remembers in an array that it changes in place."""
+
+    def __init__(self):
+        super().__init__()
+        self.count = np.zeros(1)
+
+    def demands(self, measured):
+        self.count += 1.0
+        return super().demands(measured)
+
+    def state(self):
+        return {"count": self.count}
+
+    def restore(self, state):
+        self.count = state["count"]
+
+
+def test_a_state_stays_what_it_was_whatever_a_controller_does_with_its_arrays():
+    mine = Counts()
+    with galerna.start(case(), mine) as sim:
+        sim.step()
+        here = sim.state()
+        for _ in range(2):
+            sim.step()
+            assert mine.count == 2.0
+            sim.restore(here)
+
+
 def test_a_run_resumes_to_the_same_bits_with_all_states_of_the_loop():
     control = {
         "model": "baseline",

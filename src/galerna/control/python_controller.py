@@ -137,11 +137,11 @@ def record_of(
 
 
 def state_of(controller: object, time: float) -> dict[str, np.ndarray]:
-    """What a controller remembers, as arrays; ControllerError for what cannot be saved."""
+    """What a controller remembers, copied; ControllerError for what cannot be saved."""
     if not hasattr(controller, "state"):
         return {}
     with blamed(controller, time):
-        found = {str(name): np.asarray(value) for name, value in controller.state().items()}
+        found = {str(name): np.array(value) for name, value in controller.state().items()}
     for name, value in found.items():
         if value.dtype.hasobject:
             what = f"its state {name!r} cannot be saved"

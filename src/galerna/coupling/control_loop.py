@@ -75,6 +75,7 @@ class ControlLoop:
         self.channels: tuple[Channel, ...] = (*CHANNELS, *self._own)
         self._next = -np.inf
         self.demands = Demands(machine.pitch_angles(0.0), 0.0)
+        self._held = self.demands  # in the last step: these, but for what was overridden
         self.torque = np.nan  #: N m that the generator gives
         self._braking = 0.0  # N m
         self._once: dict[str, Any] = {}
@@ -82,7 +83,7 @@ class ControlLoop:
 
     def command(self, time: float, dt: float) -> None:
         """Ask the controller if it is time, and set the machine for the step from ``time`` s."""
-        demands = self._demanded(time)
+        self._held = demands = self._demanded(time)
         machine, speed = self.machine, self.machine.drive_speed
         pitch = self._actuator.after(machine.pitch_angles(time), demands.pitch, dt)
         machine.go_pitch(pitch, time, dt)
@@ -142,12 +143,13 @@ class ControlLoop:
     def _demanded(self, time: float) -> Demands:
         """What holds for the next step."""
         if time >= self._next - CLOCK_TOLERANCE:
-            self.demands = self._checked(ask(self.controller, self.measure(time)), time)
+            asked = ask(self.controller, self.measure(time))
+            self.demands = self._checked(asked, time, controller_name(self.controller))
             self._next = self._after(time)
         if not self._once:
             return self.demands
         once, self._once = self._once, {}
-        demands = self._checked(replace(self.demands, **once), time)
+        demands = self._checked(replace(self.demands, **once), time, "step")
         if isinstance(self.controller, ExternalController):
             self.controller.hold(demands)
             self.demands = demands
@@ -158,9 +160,9 @@ class ControlLoop:
         sample = self._sample_time
         return (floor((time + CLOCK_TOLERANCE) / sample) + 1) * sample if sample else time
 
-    def _checked(self, demands: Demands, time: float) -> Demands:
+    def _checked(self, demands: Demands, time: float, where: str) -> Demands:
         """The demands with a pitch for every blade; ControllerError where that cannot be."""
-        blades, where = len(self.machine.pitch), controller_name(self.controller)
+        blades = len(self.machine.pitch)
         try:
             pitch = np.array(demands.pitch, dtype=float)
             others = (demands.generator_torque, demands.yaw_rate, demands.brake)
@@ -193,7 +195,7 @@ class ControlLoop:
 
     def record(self) -> Mapping[str, float | Array]:
         """The channels of the accepted state."""
-        torque, speed, demands = self._torque_now, self.machine.drive_speed, self.demands
+        torque, speed, demands = self._torque_now, self.machine.drive_speed, self._held
         electrical = self._train.electrical_power(torque, speed)
         measured = self.measure(self.machine.accepted.time)
         return {
@@ -236,14 +238,14 @@ class ControlLoop:
         """Take ``state`` back."""
         self._next, self._measured, self._once = float(state["clock"]), None, {}
         *others, self.torque, self._braking = state["others"].tolist()
-        self.demands = Demands(state["pitch"].copy(), *others)
+        self._held = self.demands = Demands(state["pitch"].copy(), *others)
         self._actuator.restore(state)
         self._brake.restore(state)
-        prefix = "controller/"
-        remembered = {k.removeprefix(prefix): v for k, v in state.items() if k.startswith(prefix)}
         if hasattr(self.controller, "restore"):
+            prefix = "controller/"
+            own = {k.removeprefix(prefix): v for k, v in state.items() if k.startswith(prefix)}
             with blamed(self.controller):
-                self.controller.restore(remembered)
+                self.controller.restore({name: value.copy() for name, value in own.items()})
 
     def close(self) -> None:
         """Let go of what the controller holds, where it holds something."""
