@@ -14,8 +14,8 @@ from hypothesis import strategies as st
 from galerna.contract import Channel
 from galerna.errors import ConvergenceError, InputError
 from galerna.results import ResultFile, open_result, to_csv, to_outb
+from galerna.results.dataset import log_of
 from galerna.results.log import Layout
-from galerna.results.store import log_of
 
 CHANNELS = (
     Channel("rotor_power", "W", "aerodynamic power", (), "RtAeroPwr", "kW", 1e-3),

@@ -9,8 +9,8 @@ import numpy as np
 
 from galerna.contract import Array
 from galerna.errors import InputError
+from galerna.results.dataset import log_of, open_result
 from galerna.results.log import Layout, Log, read_log
-from galerna.results.store import log_of, open_result
 
 
 @dataclass(frozen=True)

@@ -7,23 +7,14 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from galerna.contract import Array, Channel
+from galerna.contract import Array
 from galerna.errors import InputError
+from galerna.results.dataset import dataset_of, log_of
+from galerna.results.earlier import EarlierRecords
 from galerna.results.log import Layout, Log, read_log
 
 if TYPE_CHECKING:
     import xarray
-
-    from galerna.results.earlier import EarlierRecords
-
-COORDINATE_UNITS = {"time": "s", "radius": "m"}
-
-
-def log_of(path: Path) -> Path:
-    """The log that stands beside a result file while its simulation runs."""
-    return path.with_name(path.name + ".log")
 
 
 class ResultFile:
@@ -68,7 +59,7 @@ class ResultFile:
         Raises InputError if the file cannot be written; the log stays then.
         """
         _, rows = read_log(self._log.path)
-        dataset = _dataset(self._layout, rows, status)
+        dataset = dataset_of(self._layout, rows, status)
         write_netcdf(dataset, self.path)
         self._log.close()  # not before: it keeps other runs out
         self._log.path.unlink()
@@ -86,26 +77,6 @@ def check_free(path: Path, overwrite: bool) -> None:
             raise InputError(str(existing), f"{kind} stands here already", hint)
 
 
-def open_result(path: str | Path) -> xarray.Dataset:
-    """A result as a labelled dataset, finished or half-written; attribute ``status`` tells.
-
-    Raises InputError if there is none or it cannot be read.
-    """
-    path = Path(path)
-    if path.suffix == ".log" and path.exists():
-        return _dataset(*read_log(path), "half-written")
-    if not path.exists() and log_of(path).exists():
-        return _dataset(*read_log(log_of(path)), "half-written")
-    if not path.is_file():
-        raise InputError(str(path), "no such result", "galerna run CASE writes one")
-    import xarray
-
-    try:
-        return xarray.load_dataset(path, engine="netcdf4")
-    except (OSError, ValueError) as error:
-        raise InputError(str(path), f"is not a NetCDF result ({error})") from error
-
-
 def write_netcdf(dataset: xarray.Dataset, path: Path) -> None:
     """Write a NetCDF file, complete or not at all; InputError if the disk does not take it."""
     encoding = {name: {"zlib": True, "complevel": 1} for name in dataset.data_vars}
@@ -116,43 +87,3 @@ def write_netcdf(dataset: xarray.Dataset, path: Path) -> None:
     except (OSError, RuntimeError) as error:  # netCDF4 raises RuntimeError for a full disk
         unfinished.unlink(missing_ok=True)
         raise InputError(str(path), f"cannot be written: {error}") from error
-
-
-def _dataset(layout: Layout, rows: Array, status: str) -> xarray.Dataset:
-    """The records as labelled arrays; those with dimensions beside time in single precision."""
-    import xarray
-
-    places = layout.slices()
-    variables = {
-        channel.name: (
-            ("time", *channel.dims),
-            _values(layout, channel, rows[:, places[channel.name]]),
-            _describe(channel),
-        )
-        for channel in layout.channels
-    }
-    used = {name for channel in layout.channels for name in channel.dims}
-    coordinates = {"time": rows[:, 0], **{n: layout.coordinates[n] for n in sorted(used)}}
-    labelled = {
-        name: (name, values, {"units": COORDINATE_UNITS.get(name, "")})
-        for name, values in coordinates.items()
-    }
-    return xarray.Dataset(variables, labelled, {**layout.attributes, "status": status})
-
-
-def _values(layout: Layout, channel: Channel, columns: Array) -> np.ndarray:
-    if not channel.dims:
-        return columns[:, 0].copy()
-    return columns.reshape(len(columns), *layout.shape(channel)).astype(np.float32)
-
-
-def _describe(channel: Channel) -> dict[str, str | float]:
-    """Unit, meaning and OpenFAST's name of a channel, as attributes."""
-    attributes: dict[str, str | float] = {"units": channel.unit, "long_name": channel.long_name}
-    if channel.openfast:
-        attributes |= {
-            "openfast": channel.openfast,
-            "openfast_unit": channel.openfast_unit,
-            "openfast_scale": channel.openfast_scale,
-        }
-    return attributes
