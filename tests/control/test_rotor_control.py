@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from galerna.control.baseline import BaselineController, BaselineSettings
 from galerna.control.individual_pitch import (
     IndividualPitch,
     IndividualPitchSettings,
@@ -12,8 +13,10 @@ from galerna.control.individual_pitch import (
     to_blades,
     to_rotor,
 )
+from galerna.control.interface import Measurements
 from galerna.control.yawing import YawControl, YawSettings, wrapped
 from galerna.errors import InputError
+from galerna.turbine import load
 from galerna.units import DEG
 
 SLOPE = 2e7  # N m/rad, that pitch takes off a root
@@ -66,6 +69,20 @@ def test_it_fades_at_the_lowest_pitch_and_keeps_its_amplitude():
     loaded(faded, above=0.0)
     assert np.hypot(*free.integral) == pytest.approx(1.0 * DEG)
     assert faded.integral == pytest.approx([0.0, 0.0])
+
+
+def test_a_stop_leaves_nothing_of_it_to_begin_with_again():
+    """Angles of before a stop would come back at once, whatever the wind is by then."""
+    events = ((10.0, "idling"), (20.0, "production"))
+    blades = IndividualPitchSettings(1e-8)
+    options = BaselineSettings(events=events, individual_pitch=blades)
+    controller, spread = BaselineController(load("nrel5mw"), options), []
+    for time in np.arange(0.0, 20.05, 0.1):
+        now = Measurements(time, 1.27, 122.9, 4e4, 5e6, np.full(3, 0.2), 0.0)
+        now.root_moments[0, 0] = 1e6 if time < 10.0 else 0.0
+        spread.append(np.ptp(controller.demands(now).pitch))
+    assert spread[90] > 2.0 * DEG
+    assert max(spread[102:]) < 1e-9
 
 
 def turning(control: YawControl, wind: float, seconds: float, dt: float = 0.5):

@@ -164,7 +164,10 @@ class BaselineController:
 
     def _each_blade(self, collective: float, measured: Measurements, dt: float) -> Array:
         """Angles (b,) rad of the individual pitch control, in production."""
-        if self._individual is None or self.mode != "production":
+        if self._individual is None:
+            return np.zeros(len(measured.pitch))
+        if self.mode != "production":
+            self._individual.rest()
             return np.zeros(len(measured.pitch))
         moment = measured.root_moments[:, 0]
         return self._individual(moment, measured.azimuth, collective - self._minimum, dt)

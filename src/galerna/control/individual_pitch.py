@@ -47,6 +47,10 @@ class IndividualPitch:
 
     def __init__(self, settings: IndividualPitchSettings) -> None:
         self.settings = settings
+        self.rest()
+
+    def rest(self) -> None:
+        """Begin anew when it is asked again."""
         self.integral = np.zeros(2)  #: rad, of tilt and yaw
         self.moment = np.full(2, np.nan)  #: N m, of tilt and yaw, filtered
 
