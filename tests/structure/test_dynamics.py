@@ -1,5 +1,6 @@
 """Time integration: order in the step, conservation, joints, restart."""
 
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -14,9 +15,9 @@ from galerna.structure.bodies import point_mass, rigid_body
 from galerna.structure.checkpoint import load, save
 from galerna.structure.constraints import PrescribedVelocity, TouchesPlane
 from galerna.structure.frames import rotation_about
-from galerna.structure.initial import velocity_violation, with_initial_accelerations
+from galerna.structure.initial import under_way, velocity_violation, with_initial_accelerations
 from galerna.structure.integrators import Integrator, Scheme, Tolerance
-from galerna.structure.joints import hinge, integral, on_path, prismatic, spherical
+from galerna.structure.joints import hinge, integral, on_path, prismatic, spherical, turning
 from galerna.structure.system import Forces, spin_twists
 
 from .models import coupled_sections, double_pendulum, flexible_sections
@@ -306,3 +307,65 @@ def test_a_load_model_meets_its_frames():
     assert np.allclose(forces.dead, [[0] * 6, [2, 2, 2, 4, 4, 4]])
     assert np.allclose(forces.stiffness[1], 2 * np.eye(6))
     assert forces.mass is None
+
+
+def test_a_damper_sees_its_joint_without_the_drive():
+    """A body on a driven spring and damper turns with the drive and lags by nothing."""
+    rate, k, c = 0.3, 2e3, 1e3
+    s = Structure((0.0, 0.0, 0.0))
+    s.frame("head", np.zeros(3), mass=rigid_body(10.0, None, np.full(3, 5.0)))
+    bearing = hinge("bearing", "ground", "head", np.zeros(3), np.array([0.0, 0, 1]),
+                    stiffness=k, damping=c)  # fmt: skip
+    s.join(replace(bearing, placement=turning(lambda t: rate * t)))
+    system = s.build()
+    start = system.initial_state()
+    start.velocity[1, 5] = rate
+    end = run(system, 0.01, 1.0, state=start)
+    assert np.arctan2(end.rotation[1, 1, 0], end.rotation[1, 0, 0]) == pytest.approx(rate, abs=1e-9)
+    assert system.dissipation(end) < 1e-9
+
+
+def test_an_inertance_resists_the_relative_spin():
+    """Two free bodies on a hinge: Newton's equations of both, in the start and after a while."""
+    first, second, between, torque = 7.0, 2.0, 30.0, 5.0
+    s = Structure((0.0, 0.0, 0.0))
+    for name, inertia in (("first", first), ("second", second)):
+        s.frame(name, np.zeros(3), mass=rigid_body(1.0, None, np.full(3, inertia)))
+    axis = np.array([0.0, 0.0, 1.0])
+    s.join(hinge("shaft", "first", "second", np.zeros(3), axis, inertance=between))
+    system = s.build()
+    system.set_torque("shaft", torque)
+    matrix = np.array([[first + between, -between], [-between, second + between]])
+    rates = np.linalg.solve(matrix, [-torque, torque])
+    start = with_initial_accelerations(system, system.initial_state())
+    assert start.acceleration[1:, 5] == pytest.approx(rates, rel=1e-9)
+    end = run(system, 0.01, 1.0, state=start)
+    assert end.velocity[1:, 5] == pytest.approx(rates, rel=1e-7)
+    work = torque * 0.5 * (rates[1] - rates[0])
+    assert system.energies(end)[0] == pytest.approx(work, rel=1e-7)
+
+
+def test_a_driven_joint_starts_without_ringing():
+    """A start under way has the accelerations of the path within what the step leaves later."""
+    dt, rate = 0.02, 2.0
+    path = lambda t: (np.array([np.sin(rate * t), 0.0, 0.0]), rotation_about(1, 0.3 * t + t**3))  # noqa: E731
+    s = Structure((0.0, 0.0, 0.0))
+    s.frame("cart", np.zeros(3), mass=rigid_body(1.0, None, np.ones(3)))
+    s.join(on_path("rail", "cart", path))
+    system, integrator = s.build(), Integrator(s.build(), tolerance=TIGHT)
+    exact = system.initial_state()
+    exact.velocity[1] = [rate, 0.0, 0.0, 0.0, 0.3, 0.0]
+    exact = with_initial_accelerations(system, exact)
+    ringing = []
+    for start in (exact, under_way(system, exact, integrator.scheme, dt)):
+        errors = []
+        for state in integrator.march(start, dt, 30):
+            body = state.acceleration[1, :3] + np.cross(
+                state.velocity[1, 3:], state.velocity[1, :3]
+            )
+            linear = (state.rotation[1] @ body)[0] + rate**2 * np.sin(rate * state.time)
+            errors.append(max(abs(linear), abs(state.acceleration[1, 4] - 6.0 * state.time)))
+        ringing.append(max(errors))
+    jerk = rate**3
+    assert ringing[0] > dt * jerk
+    assert ringing[1] < dt**2 * jerk

@@ -7,16 +7,18 @@ import pytest
 
 from galerna import turbine as turbines
 from galerna.errors import InputError
+from galerna.structure.forces import Forces
 from galerna.structure.frames import rotation_about
-from galerna.structure.initial import with_initial_accelerations
+from galerna.structure.initial import with_fitting_velocities, with_initial_accelerations
 from galerna.structure.integrators import Integrator
 from galerna.structure.mode_names import name_modes
 from galerna.structure.modes import natural_modes
 from galerna.structure.statics import static_equilibrium
-from galerna.structure.system import spin_twists
-from galerna.structure.turbine import TurbineOptions, turbine_system
-from galerna.structure.whirl import whirl_modes
+from galerna.structure.system import spin_twists, with_spin
+from galerna.structure.turbine import TurbineOptions, generator_inertias, turbine_system
+from galerna.structure.whirl import rotor_nodes, whirl_modes
 from galerna.turbine.geometry import blade_frames
+from galerna.turbine.model import Drivetrain
 from galerna.units import DEG
 
 FEW = {"blade_elements": 6, "tower_elements": 4}
@@ -159,3 +161,53 @@ def test_turning_splits_the_asymmetric_modes_by_twice_the_speed(nrel):
     found = 2 * np.pi * whirl_modes(nrel, speed, 9, options).modes.frequency
     backward, _, forward = found[found > 0.1][:3]
     assert forward - backward == pytest.approx(2 * speed, rel=1e-3)
+
+
+@pytest.mark.parametrize("ratio", [1.0, 97.0])
+def test_a_geared_generator_has_the_energy_of_its_own_speed(ratio):
+    """Spin ``ratio`` times that of the shaft in the nacelle, and the nacelle's."""
+    own, between = generator_inertias(Drivetrain(gear_ratio=ratio, generator_inertia=534.0))
+    for shaft, nacelle in ((1.3, 0.0), (0.0, 0.1), (1.3, 0.1)):
+        speed = ratio * (shaft - nacelle) + nacelle
+        parts = own * shaft**2 + between * (shaft - nacelle) ** 2
+        parts += (1.0 - ratio) * 534.0 * nacelle**2
+        assert parts == pytest.approx(534.0 * speed**2, rel=1e-9)
+
+
+@pytest.mark.parametrize("flexible_shaft", [True, False])
+def test_the_nacelle_feels_the_generator_speed_up(nrel, flexible_shaft):
+    """The gearbox's housing takes the shaft's torque, which the lost torque no longer holds."""
+    options = TurbineOptions(
+        blade_elements=0, tower_elements=0, flexible_shaft=flexible_shaft, flexible_yaw=False,
+        gravity=(0.0, 0.0, 0.0),
+    )  # fmt: skip
+    system = turbine_system(nrel, options).system
+    hub, forces = system.names.index("hub"), Forces.none(len(system))
+    forces.follower[hub, 3] = 4e6
+    state = with_initial_accelerations(system, system.initial_state(), forces)
+    generator = system.names.index("generator" if flexible_shaft else "hub")
+    speeding = nrel.drivetrain.generator_inertia * 97.0 * 96.0 * state.acceleration[generator, 3]
+    felt = system.node_wrenches(state)[system.pair("yaw bearing"), 9]
+    assert felt == pytest.approx(speeding * np.cos(nrel.nacelle.tilt), rel=1e-6, abs=1.0)
+    assert (speeding > 1e5) is not flexible_shaft  # whose torsion passes nothing on at once
+
+
+def test_the_gyroscopic_moment_of_a_generator_goes_with_its_gear_ratio_once(nrel):
+    """On a nodding nacelle its angular momentum is inertia times its own speed, no more."""
+    nod, speed, moments = 0.05, 1.2, []
+    foot = nrel.tower.axis[0]
+    options = TurbineOptions(
+        blade_elements=0, tower_elements=0, flexible_yaw=False, gravity=(0.0, 0.0, 0.0),
+        base_motion=lambda t: (foot, rotation_about(1, nod * t)),
+    )  # fmt: skip
+    for inertia in (0.0, 534.116):
+        drivetrain = replace(nrel.drivetrain, generator_inertia=inertia)
+        model = turbine_system(replace(nrel, drivetrain=drivetrain), options)
+        system = model.system
+        state = with_spin(
+            system.initial_state(), model.hub_center, speed * model.shaft_axis, rotor_nodes(model)
+        )
+        state = with_initial_accelerations(system, with_fitting_velocities(system, state))
+        moments.append(system.node_wrenches(state)[system.pair("yaw bearing"), 11])
+    expected = 534.116 * 97.0 * speed * nod * np.cos(nrel.nacelle.tilt)
+    assert moments[1] - moments[0] == pytest.approx(expected, rel=0.02)

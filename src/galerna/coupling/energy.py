@@ -16,7 +16,7 @@ the square of the step.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -151,7 +151,7 @@ class EnergyLedger:
         damping = 0.5 * (first.damping + second.damping)
         works[_NAMES.index("damping")] = np.sum(damping * (second.strain - first.strain))
         works[_NAMES.index("numerical")] = dissipated(
-            self._scheme, self._system.mass, first.state, second.state, dt
+            self._scheme, self._system.inertia, first.state, second.state, dt
         )
         for k, (_, name) in enumerate(self._drives):
             (x0, R0), (x1, R1) = first.places[k], second.places[k]
@@ -166,14 +166,18 @@ def increments(scheme: Scheme, first: State, second: State, dt: float) -> Array:
     return dt * first.velocity + dt**2 * mean
 
 
-def dissipated(scheme: Scheme, mass: Array, first: State, second: State, dt: float) -> float:
-    """Energy J that the scheme takes from the motion in a step; see the module's text."""
+def dissipated(
+    scheme: Scheme, inertia: Callable[[Array], Array], first: State, second: State, dt: float
+) -> float:
+    """Energy J that the scheme takes from the motion in a step; see the module's text.
+
+    ``inertia`` takes twists (n,6) to momenta.
+    """
     increment = increments(scheme, first, second, dt)
     a0, a1 = first.auxiliary, second.auxiliary
     change = a1 - a0
     rate = second.acceleration - first.acceleration
-    weighted = (mass @ (change - rate)[:, :, None])[:, :, 0]
-    filtered = (0.5 - scheme.alpha_f) * float(np.sum(increment * weighted))
-    kinds = [float(np.einsum("ni,nij,nj->", a, mass, a)) for a in (a0, a1, change)]
+    filtered = (0.5 - scheme.alpha_f) * float(np.sum(increment * inertia(change - rate)))
+    kinds = [float(np.sum(a * inertia(a))) for a in (a0, a1, change)]
     parabolic = 0.5 * (kinds[1] - kinds[0]) + (scheme.gamma - 0.5) * kinds[2]
     return filtered + dt**2 * (scheme.beta - 0.5 * scheme.gamma) * parabolic

@@ -8,7 +8,7 @@ from galerna.contract import Array
 from galerna.coupling import channels as c
 from galerna.coupling.snapshot import Snapshot, cross, named, true_acceleration, turned
 from galerna.structure.frames import rotation_about
-from galerna.structure.turbine import TurbineSystem
+from galerna.structure.turbine import TurbineSystem, generator_inertias
 from galerna.turbine.model import Turbine
 
 
@@ -23,8 +23,7 @@ class ShaftSensors:
         flexible = "shaft" in system.pair_names
         self._pair = system.pair("shaft" if flexible else "main bearing")
         # a rigid shaft's hub carries the generator, which the shaft's load turns
-        generator = drivetrain.generator_inertia * drivetrain.gear_ratio**2
-        self._generator = 0.0 if flexible else generator
+        self._generator = 0.0 if flexible else generator_inertias(drivetrain)[0]
         self._tilted = rotation_about(1, turbine.nacelle.tilt)
         self._sensor = np.array([0.0, 0.0, turbine.nacelle.shaft_height])
 

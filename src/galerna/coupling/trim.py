@@ -34,7 +34,7 @@ from galerna.kinematics import PrescribedOperation
 from galerna.signals import Signal
 from galerna.structure import TurbineOptions, with_initial_accelerations
 from galerna.structure.frames import log_se3
-from galerna.structure.initial import with_fitting_velocities
+from galerna.structure.initial import under_way, with_fitting_velocities
 from galerna.structure.system import State
 from galerna.turbine.model import Turbine
 from galerna.units import DEG
@@ -103,7 +103,9 @@ class Trim:
             velocity=_rate(before, after, 2.0 * step),
         )
         first = with_fitting_velocities(machine.system, first)
-        machine.start(with_initial_accelerations(machine.system, first, steady.forces()))
+        first = with_initial_accelerations(machine.system, first, steady.forces())
+        step, scheme = self._settings.time_step_s, machine.integrator.scheme
+        machine.start(under_way(machine.system, first, scheme, step))
         return torque
 
     def _point_holds(self, operation: PrescribedOperation) -> bool:

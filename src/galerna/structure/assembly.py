@@ -110,6 +110,7 @@ class Structure:
         self._add_pair(
             joint.name, joint.first, joint.second, places[0], places[1],
             np.zeros(6), joint.stiffness, joint.damping, joint.locked, has_offset=True,
+            inertance=joint.inertance,
         )  # fmt: skip
 
     def constrain(self, constraint: Constraint) -> None:
@@ -173,7 +174,7 @@ class Structure:
     def _add_pair(
         self, name: str, first: str, second: str, at_first: tuple[Array, Array],
         at_second: tuple[Array, Array], reference: Array, stiffness: Array, damping: Array,
-        locked: tuple[int, ...], has_offset: bool,
+        locked: tuple[int, ...], has_offset: bool, inertance: float = 0.0,
     ) -> None:  # fmt: skip
         self._pairs.append(
             {
@@ -186,6 +187,7 @@ class Structure:
                 "stiffness": stiffness,
                 "damping": damping,
                 "locked": [k in locked for k in ALL],
+                "inertance": inertance,
             }
         )
 
@@ -205,6 +207,8 @@ class Structure:
             damped=np.abs(damping).max(axis=(1, 2), initial=0.0) > 0.0,
             preload=np.zeros((len(damping), 6)),
             locked=column("locked", 6) != 0.0,
+            drive_twist=np.zeros((len(damping), 6)),
+            inertance=column("inertance"),
         )
 
 

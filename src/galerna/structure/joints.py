@@ -32,7 +32,8 @@ class Joint:
     It stands at ``position`` (3,) m with ``axes`` (3,3) as columns, global, in the first
     shape. ``locked`` components are held; the others carry ``stiffness`` and ``damping``
     (6,6) N/m, N m/rad, N s/m, N m s/rad. ``placement`` moves the joint in its own axes as a
-    function of time: position (3,) m and rotation (3,3).
+    function of time: position (3,) m and rotation (3,3). ``inertance`` kg m2, of a hinge, gives
+    a torque against the relative angular acceleration: a rotor that gears turn fast.
     """
 
     name: str
@@ -44,6 +45,7 @@ class Joint:
     stiffness: Array = field(default_factory=lambda: np.zeros((6, 6)))
     damping: Array = field(default_factory=lambda: np.zeros((6, 6)))
     placement: Path | None = None
+    inertance: float = 0.0
 
 
 def rigid(name: str, first: str, second: str, position: Array) -> Joint:
@@ -66,11 +68,12 @@ def hinge(
     speed: Angle | None = None,
     stiffness: float = 0.0,
     damping: float = 0.0,
+    inertance: float = 0.0,
 ) -> Joint:
     """Rotation about ``axis`` (3,) alone: free, or with ``angle`` rad or ``speed`` rad/s of time.
 
     A free one may have a damper N m s/rad and a torsion spring N m/rad, which knows its angle
-    within half a turn; a torque is set with ``System.set_torque``.
+    within half a turn; a torque is set with ``System.set_torque``. ``inertance`` see ``Joint``.
     """
     K, D = np.zeros((6, 6)), np.zeros((6, 6))
     K[5, 5], D[5, 5] = stiffness, damping
@@ -80,7 +83,8 @@ def hinge(
         angle = integral(speed)
     locked = (0, 1, 2, 3, 4) if angle is None else ALL
     placement = None if angle is None else turning(angle)
-    return Joint(name, first, second, position, axes_along(axis), locked, K, D, placement)
+    axes = axes_along(axis)
+    return Joint(name, first, second, position, axes, locked, K, D, placement, inertance)
 
 
 def prismatic(name: str, first: str, second: str, position: Array, axis: Array) -> Joint:

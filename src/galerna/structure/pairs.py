@@ -41,7 +41,8 @@ class Pairs(NamedTuple):
     ``offset_position`` (m,2,3) place the frames A and B in their nodes' axes where
     ``has_offset`` (m,). The wrench is ``stiffness @ (d - reference) + damping @ d' +
     preload`` with (m,6,6) and (m,6) arrays in the axes of d; ``locked`` (m,6) marks the
-    components of d that a joint holds at zero.
+    components of d that a joint holds at zero. ``drive_twist`` (m,6) is that of A in its own
+    axes against its node; ``inertance`` (m,) kg m2 resists the rate of the relative spin about z.
     """
 
     ends: Integers
@@ -54,6 +55,8 @@ class Pairs(NamedTuple):
     damped: Flags
     preload: Array
     locked: Flags
+    drive_twist: Array
+    inertance: Array
 
 
 class PairAnswer(NamedTuple):
@@ -135,12 +138,15 @@ def _respond(
     xb, Rb, vb, carry_b = _end(pairs, e, 1, x, R, v)
     d = log_se3(multiply3_transposed(Ra, Rb), apply_transposed(Ra, xb - xa))
     by_b, by_a = inverse_tangents(d)
+    driven = np.zeros(6)
     if has_offset:
+        driven = apply(by_a, pairs.drive_twist[e])
+        va = va + pairs.drive_twist[e]
         by_b, by_a = multiply6(by_b, carry_b), multiply6(by_a, carry_a)
     first, second = v[pairs.ends[e, 0]], v[pairs.ends[e, 1]]
     wrench, rate, P = out.wrench[e], out.rate[e], out.direction[e]
     for i in range(6):
-        out.motion[e, i], rate[i] = d[i], 0.0
+        out.motion[e, i], rate[i] = d[i], -driven[i]
         wrench[i] = pairs.preload[e, i] + multiplier[e, i]
         for j in range(6):
             wrench[i] += pairs.stiffness[e, i, j] * (d[j] - pairs.reference[e, j])

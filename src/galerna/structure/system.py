@@ -20,7 +20,7 @@ from galerna.errors import InputError, did_you_mean
 
 from .constraints import Constraint, constraint_rows
 from .forces import Forces, add_load_tangents
-from .frames import adjoint
+from .frames import adjoint, log_se3
 from .inertia import node_balance
 from .pairs import Integers, PairAnswer, Pairs, answer, empty_answer, respond
 from .solvers import LinearSolver, Rows, Solution, choose_solver
@@ -61,6 +61,7 @@ ARRAYS = tuple(name for name in State.__dataclass_fields__ if name != "time")
 
 
 LoadFunction = Callable[[State], Forces]
+SHORTLY = 1e-6  #: s, over which the velocity of a drive is taken: to the end of a path's piece
 Placement = Callable[[float], tuple[Array, Array]]  #: time -> position (3,), rotation (3,3)
 
 
@@ -148,11 +149,14 @@ class System:
         return State(0.0, x, R, rest, rest.copy(), rest.copy(), multiplier, others)
 
     def set_time(self, time: float) -> None:
-        """Move the driven frames to where they are at ``time``."""
+        """Move the driven frames to where they are at ``time``; dampers see how fast they move."""
         for pair, placement in self.drives:
             x, R = placement(time)
             self.pairs.offset_position[pair, 0] = x
             self.pairs.offset_rotation[pair, 0] = R
+            if self.pairs.damped[pair]:
+                x0, R0 = placement(time - SHORTLY)
+                self.pairs.drive_twist[pair] = log_se3(R0.T @ R, R0.T @ (x - x0)) / SHORTLY
 
     def balance(
         self,
@@ -185,6 +189,7 @@ class System:
             self.pairs, state.multiplier, state.position, state.rotation, state.velocity,
             velocity_tangent, self._room, carried,
         )  # fmt: skip
+        self.add_inertance(pairs, state.acceleration, acceleration_tangent)
         rows = self._add_internal(state, pairs, velocity_tangent, residual)
         return Balance(residual, nodes, pairs, rows)
 
@@ -199,9 +204,39 @@ class System:
             self.pairs, state.multiplier, state.position, state.rotation, state.velocity,
             self._room,
         )  # fmt: skip
+        self.add_inertance(pairs, state.acceleration)
         velocity_tangent = self.still() if self.constraints else none
         rows = self._add_internal(state, pairs, velocity_tangent, residual)
         return Balance(residual, none, pairs, rows)
+
+    @cached_property
+    def _gears(self) -> list[tuple[int, Integers, Array]]:
+        """Pairs with an inertance, their nodes (2,), and their relative spin by twists (12,)."""
+        found = []
+        for pair in np.flatnonzero(self.pairs.inertance):
+            axis_a, axis_b = self.pairs.offset_rotation[pair, :, :, 2]
+            spin = np.concatenate([np.zeros(3), -axis_a, np.zeros(3), axis_b])
+            found.append((int(pair), self.pairs.ends[pair], spin))
+        return found
+
+    def add_inertance(
+        self, pairs: PairAnswer, rates: Array, acceleration_tangent: Array | None = None
+    ) -> None:
+        """Add to the pairs' node wrenches what resists twist ``rates`` (n,6); and tangents."""
+        for pair, nodes, spin in self._gears:
+            along = self.pairs.inertance[pair] * spin
+            pairs.node_wrench[pair] += along * (spin @ rates[nodes].ravel())
+            if acceleration_tangent is not None:
+                follows = spin.reshape(2, 1, 6) @ acceleration_tangent[nodes]
+                pairs.tangent[pair] += np.outer(along, follows)
+
+    def inertia(self, twist: Array) -> Array:
+        """Mass matrix of frames and gears times twists or rates (n,6), in body axes."""
+        out: Array = (self.mass @ twist[:, :, None])[:, :, 0]
+        for pair, nodes, spin in self._gears:
+            along = self.pairs.inertance[pair] * spin * (spin @ twist[nodes].ravel())
+            out[nodes] += along.reshape(2, 6)
+        return out
 
     def _add_internal(
         self, state: State, pairs: PairAnswer, velocity_tangent: Array, residual: Array
@@ -253,7 +288,7 @@ class System:
 
     def energies(self, state: State) -> tuple[float, float, float]:
         """Kinetic, elastic and gravitational energy, J (gravity's is zero at the origin)."""
-        kinetic = 0.5 * np.einsum("ni,nij,nj->", state.velocity, self.mass, state.velocity)
+        kinetic = 0.5 * np.sum(state.velocity * self.inertia(state.velocity))
         strain = self.pair_motion(state) - self.pairs.reference
         elastic = 0.5 * np.einsum("mi,mij,mj->", strain, self.pairs.stiffness, strain)
         moment = self.weight[:, :1] * state.position + np.einsum(
@@ -283,18 +318,22 @@ class System:
     def pair_answer(self, state: State) -> PairAnswer:
         """Relative motions, wrenches and node wrenches of the pairs at a state."""
         self.set_time(state.time)
-        return answer(
+        pairs = answer(
             self.pairs, state.multiplier, state.position, state.rotation, state.velocity,
             self.still(), empty_answer(len(self.pairs.ends)),
         )  # fmt: skip
+        self.add_inertance(pairs, state.acceleration)
+        return pairs
 
     def node_wrenches(self, state: State) -> Array:
         """Wrenches (m,12) of the pairs in the residual of their nodes, in the nodes' axes."""
         self.set_time(state.time)
-        return respond(
+        pairs = respond(
             self.pairs, state.multiplier, state.position, state.rotation, state.velocity,
             empty_answer(len(self.pairs.ends)),
-        ).node_wrench  # fmt: skip
+        )  # fmt: skip
+        self.add_inertance(pairs, state.acceleration)
+        return pairs.node_wrench
 
     def internal_loads(self, state: State, beam: str, forces: Forces | None = None) -> Array:
         """Force N and moment N m (n+1,6) that the outer part of a beam puts on the inner one.

@@ -16,7 +16,7 @@ import numpy as np
 from galerna.contract import Array
 from galerna.errors import InputError
 from galerna.turbine.geometry import axis_positions, axis_tangents, section_rotations
-from galerna.turbine.model import SectionProperties, Turbine
+from galerna.turbine.model import Drivetrain, SectionProperties, Turbine
 
 from .assembly import GROUND, Structure
 from .beam import Beam, Curve, damped, discretise
@@ -188,23 +188,26 @@ class _Builder:
         small = SMALL_ARM**2 * t.hub.mass
         inertia = np.array([max(t.hub.inertia, small), small, small])
         hub = rigid_body(t.hub.mass, np.array([t.hub.center_of_mass, 0.0, 0.0]), inertia)
-        generator = drivetrain.generator_inertia * drivetrain.gear_ratio**2
+        own, geared = generator_inertias(drivetrain)
         s.frame("hub", self.hub_center, self.hub_axes, hub)
         self._note("hub", ["hub"], np.zeros(1), self.hub_center, self.hub_axes)
         driven = (
             "generator" if self.options.flexible_shaft and drivetrain.shaft_stiffness else "hub"
         )
         if driven == "generator":
-            light = rigid_body(1.0, None, np.array([max(generator, 1.0), 1.0, 1.0]))
+            light = rigid_body(1.0, None, np.array([max(own, 1.0), 1.0, 1.0]))
             s.frame("generator", self.hub_center, self.hub_axes, light)
             s.join(
                 hinge("shaft", "generator", "hub", self.hub_center, self.shaft,
                       stiffness=drivetrain.shaft_stiffness, damping=drivetrain.shaft_damping)
             )  # fmt: skip
         else:
-            s.add_mass("hub", np.diag([0.0, 0.0, 0.0, generator, 0.0, 0.0]), weighs=False)
+            s.add_mass("hub", np.diag([0.0, 0.0, 0.0, own, 0.0, 0.0]), weighs=False)
         angle, speed = self._turning()
-        s.join(hinge("main bearing", "nacelle", driven, self.hub_center, self.shaft, angle, speed))
+        s.join(
+            hinge("main bearing", "nacelle", driven, self.hub_center, self.shaft, angle, speed,
+                  inertance=geared)
+        )  # fmt: skip
 
     def _turning(self) -> tuple[Angle | None, Angle | None]:
         """Angle and speed of the main bearing as functions of time, where it is driven."""
@@ -282,6 +285,20 @@ class _Builder:
 
     def _note(self, part: str, names: list[str], span: Array, origin: Array, axes: Array) -> None:
         self.parts[part], self.span[part], self.places[part] = names, span, (origin, axes)
+
+
+def generator_inertias(drivetrain: Drivetrain) -> tuple[float, float]:
+    """What of a generator's inertia kg m2, at the low-speed shaft, turns with the shaft and what
+    resists its speed in the nacelle.
+
+    With an inertia J and a ratio n its energy is J (n s + (1 - n) r)^2 / 2 for spins s of the
+    shaft and r of the nacelle about it: n J turning with the shaft and n (n - 1) J between both,
+    but for the nacelle's own part, (1 - n) J. So it adds n J alone to the gyroscopic moments,
+    and the gearbox's housing passes to the nacelle what speeds the generator up.
+    """
+    inertia, ratio = drivetrain.generator_inertia, drivetrain.gear_ratio
+    between = inertia * min(max(ratio * (ratio - 1.0), 0.0), ratio**2)
+    return inertia * ratio**2 - between, between
 
 
 def axis_curve(
