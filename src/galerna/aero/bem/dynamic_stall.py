@@ -135,7 +135,7 @@ def _look_up(table: Array, section: int, angle: float) -> tuple[float, float, fl
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
-def _passage(chord: float, speed: float) -> float:
+def passage(chord: float, speed: float) -> float:
     """T_u = c / 2U in s."""
     return min(0.5 * chord / max(speed, 1e-9), SLOWEST_PASSAGE)
 
@@ -154,7 +154,7 @@ def _rate_lift(slope: float, passage: float, torsion_rate: float) -> float:
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
-def _model_share(angle: float) -> float:
+def model_share(angle: float) -> float:
     """1 in flow from the front, 0 beyond BLEND_END, a half cosine between."""
     if abs(angle) <= BLEND_START:
         return 1.0
@@ -177,7 +177,7 @@ def start_stall(
     """Set ``state`` (8,) to the flow that has long been as given; see ``advance_stall``."""
     slope = parameters[section, 0]
     speed = sqrt(normal_velocity**2 + chordwise_velocity**2)
-    rate_lift = _rate_lift(slope, _passage(chord, speed), torsion_rate)
+    rate_lift = _rate_lift(slope, passage(chord, speed), torsion_rate)
     angle = _pressure_angle(atan2(normal_velocity, chordwise_velocity), slope, rate_lift)
     point = _look_up(table, section, angle)[3]
     state[0] = normal_velocity
@@ -208,14 +208,14 @@ def _advance_lags(
     a_1, a_2 = parameters[section, 2], parameters[section, 3]
     b_1, b_2 = parameters[section, 4], parameters[section, 5]
     speed = sqrt(normal_velocity**2 + chordwise_velocity**2)
-    travelled = dt / _passage(chord, 0.5 * (state[5] + speed))
+    travelled = dt / passage(chord, 0.5 * (state[5] + speed))
 
     advanced[0] = first_order_lag(state[0], state[4], normal_velocity, b_1 * travelled)
     advanced[1] = first_order_lag(state[1], state[4], normal_velocity, b_2 * travelled)
     downwash = (1.0 - a_1 - a_2) * normal_velocity + a_1 * advanced[0] + a_2 * advanced[1]
     effective = atan2(downwash, chordwise_velocity)
 
-    rate_lift = _rate_lift(slope, _passage(chord, speed), torsion_rate)
+    rate_lift = _rate_lift(slope, passage(chord, speed), torsion_rate)
     unlagged = _pressure_angle(effective, slope, rate_lift)
     advanced[2] = first_order_lag(state[2], state[6], unlagged, travelled / parameters[section, 6])
     static_point = _look_up(table, section, advanced[2])[3]
@@ -267,7 +267,7 @@ def advance_stall(
         advanced,
     )
     angle = atan2(normal_velocity, chordwise_velocity)
-    share = _model_share(angle)
+    share = model_share(angle)
     if share == 0.0:
         static = _look_up(table, section, angle)
         return static[0], static[1], static[2]

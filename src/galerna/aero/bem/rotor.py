@@ -9,6 +9,7 @@ import numpy as np
 from numba import njit
 
 from galerna.aero.bem import strips as s
+from galerna.aero.bem.curved_flow import curved_flow_moment
 from galerna.aero.bem.dynamic_inflow import advance_inflow, slow_time_constant, start_inflow
 from galerna.aero.bem.dynamic_stall import advance_stall, start_stall
 from galerna.aero.bem.momentum import FASTMATH, Momentum, solve_strip
@@ -246,15 +247,17 @@ def _section(
     strips[i, s.ACROSS], strips[i, s.ALONG] = across, along
     c, sn = strips[i, s.PITCH_COSINE], strips[i, s.PITCH_SINE]
     to_suction, to_trailing = across * c - along * sn, across * sn + along * c
-    torsion = 0.0
+    torsion, curving = 0.0, 0.0
     if rotor.three_quarter_chord:
-        to_suction += 0.5 * chord * strips[i, s.TURNING]
+        curving = strips[i, s.TURNING]
         torsion = strips[i, s.TORSION]  # steady coning bends the flow but accelerates no air
+        to_suction += 0.5 * chord * curving
     angle = atan2(to_suction, to_trailing)
     strips[i, s.ANGLE_OF_ATTACK] = angle
     if not rotor.unsteady_airfoil:
         coefficients = section_coefficients(table, station, angle)
     else:
+        curving -= torsion  # whose moment the unsteady section has
         start, end = before[i, STALL], after[i, STALL]
         if dt < 0.0:
             start_stall(end, table, station, stall, chord, to_suction, to_trailing, torsion)
@@ -271,11 +274,13 @@ def _section(
             max(dt, 0.0),
             end,
         )
+    lift, drag, moment = coefficients
+    moment += curved_flow_moment(stall[station, 0], chord, strips[i, s.SPEED], angle, curving)
     if (rotor.tip_unloaded and shape[i, s.TO_TIP] <= 0.0) or (
         rotor.root_unloaded and shape[i, s.TO_ROOT] <= 0.0
     ):
-        coefficients = 0.0, 0.0, 0.0  # the loss factor is zero there, and so is the circulation
-    strips[i, s.LIFT], strips[i, s.DRAG], strips[i, s.MOMENT] = coefficients
+        lift, drag, moment = 0.0, 0.0, 0.0  # the loss factor is zero there, and so the circulation
+    strips[i, s.LIFT], strips[i, s.DRAG], strips[i, s.MOMENT] = lift, drag, moment
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
