@@ -53,6 +53,10 @@ void DISCON(float *swap, int *failure, char *input, char *output, char *message)
             *failure = -1;
             strcpy(message, "lengths of the names are wrong");
         }
+        if (swap[65] != 1001.0f || swap[128] != 3300.0f) {
+            *failure = -1;
+            strcpy(message, "the platform's place or the array's size is wrong");
+        }
     }
     note_call(status);
     memory += swap[19];

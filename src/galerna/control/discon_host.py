@@ -77,6 +77,7 @@ class Library:
             "50": len(self._input),
             "51": len(self._output_name) + 1,
             "64": NAME_LENGTH,
+            "129": SWAP_RECORDS,
         }
         self._put(setup["initial"])
 

@@ -19,7 +19,7 @@ from galerna.turbine.model import Turbine
 
 FIRST_CALL, LATER_CALL = 0.0, 1.0  #: record 1
 LOG_START, MOST_LOGGED = 165, 300  #: records 63 and 62
-EXTENDED_VERSION = 1.0  #: record 1000
+EXTENDED_VERSION, PLATFORM = 1.0, 1001  #: record 1000, and 66: where the platform's motion begins
 CONTACTOR, BRAKE, PITCH, COLLECTIVE, TORQUE, YAW_RATE = 35, 36, 42, 45, 47, 48
 PITCH_OVERRIDE, TORQUE_OVERRIDE, YAW_OVERRIDE, BRAKE_TORQUE = 55, 56, 102, 107
 ASKED = (
@@ -90,9 +90,9 @@ MEASURED: tuple[Record, ...] = (
     Record(83, "nacelle nodding acceleration", "rad/s2",
            lambda m: m.nacelle_angular_acceleration[1]),
     Record(84, "nacelle yaw acceleration", "rad/s2", lambda m: m.nacelle_angular_acceleration[2]),
-    *_platform(1001, "displacement", "platform", ("m", "rad")),
-    *_platform(1007, "velocity", "platform_velocity", ("m/s", "rad/s")),
-    *_platform(1013, "acceleration", "platform_acceleration", ("m/s2", "rad/s2")),
+    *_platform(PLATFORM, "displacement", "platform", ("m", "rad")),
+    *_platform(PLATFORM + 6, "velocity", "platform_velocity", ("m/s", "rad/s")),
+    *_platform(PLATFORM + 12, "acceleration", "platform_acceleration", ("m/s2", "rad/s2")),
 )  # fmt: skip
 
 
@@ -195,5 +195,6 @@ def constants(turbine: Turbine) -> dict[int, float]:
         61: float(turbine.number_of_blades),
         62: float(MOST_LOGGED),
         63: float(LOG_START),
+        66: float(PLATFORM),
         1000: EXTENDED_VERSION,
     }
