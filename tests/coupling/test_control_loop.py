@@ -271,6 +271,12 @@ def test_the_yaw_error_is_that_of_the_nacelle_against_the_wind():
         assert sim.measure().yaw_error == pytest.approx(30.0 * DEG)
 
 
+def test_the_wind_speed_is_the_horizontal_one():
+    with galerna.start(case()) as sim:
+        sim.simulation.commander._hub_wind = lambda time: np.array([3.0, 4.0, 12.0])
+        assert sim.measure().wind_speed == pytest.approx(5.0)
+
+
 def test_without_control_and_operation_a_case_says_what_to_give():
     with pytest.raises(InputError, match="control: baseline"):
         galerna.run({key: value for key, value in case().items() if key != "control"})

@@ -16,11 +16,11 @@ class Measurements:
     """The machine as its sensors show it, in SI and radians.
 
     ``generator_speed`` is at the generator's own shaft, ``generator_torque`` N m what acts there
-    now. ``pitch`` (b,) per blade. ``yaw_error`` is the nacelle's yaw minus the wind's direction.
-    ``root_moments`` (b,2) N m out of plane and in plane at the blades' roots, positive as thrust
-    and driving torque bend the blades; ``tower_top_acceleration`` (3,) m/s2 and
-    ``nacelle_angular_acceleration`` (3,) rad/s2 in nacelle axes; ``platform`` (6,) m and rad with
-    its velocity and acceleration.
+    now. ``pitch`` (b,) per blade. ``yaw_error`` is the nacelle's yaw minus the wind's direction,
+    ``wind_speed`` the horizontal one at the hub. ``root_moments`` (b,2) N m out of plane and in
+    plane at the blades' roots, positive as thrust and driving torque bend the blades;
+    ``tower_top_acceleration`` (3,) m/s2 and ``nacelle_angular_acceleration`` (3,) rad/s2 in
+    nacelle axes; ``platform`` (6,) m and rad with its velocity and acceleration.
     """
 
     time: float

@@ -131,7 +131,7 @@ class ControlLoop:
             azimuth=machine.azimuth,
             yaw=yaw,
             yaw_error=wrapped(yaw - float(np.arctan2(wind[1], wind[0]))),
-            wind_speed=float(np.sqrt(wind @ wind)),
+            wind_speed=float(np.hypot(wind[0], wind[1])),
             root_moments=machine.root_moments(),
             tower_top_acceleration=machine.tower_top_acceleration(),
             platform=machine.platform_motion(),
