@@ -136,6 +136,12 @@ def test_a_half_written_result_is_not_overwritten_unasked(tmp_path):
         write(tmp_path / "case.nc")
 
 
+def test_a_place_that_cannot_be_written_is_said(tmp_path):
+    log_of(tmp_path / "a.nc").mkdir()
+    with pytest.raises(InputError, match=r"a\.nc\.log: cannot be written"):
+        ResultFile(tmp_path / "a.nc", LAYOUT, overwrite=True)
+
+
 def test_two_runs_do_not_write_one_result(tmp_path):
     pytest.importorskip("fcntl")
     first = write(tmp_path / "case.nc")

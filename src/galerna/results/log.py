@@ -74,7 +74,8 @@ class Log:
     """The log of a run, open for writing.
 
     With ``keep``, it goes on after so many records of the log that stands there; those that
-    follow are cut off. Raises InputError where that holds less, or another run is writing it.
+    follow are cut off. Raises InputError where that holds less, it cannot be written, or another
+    run is writing it.
     """
 
     def __init__(self, path: Path, layout: Layout, keep: int | None = None) -> None:
@@ -82,7 +83,7 @@ class Log:
         self.records = keep or 0  #: in it
         self._slices = tuple(layout.slices().items())
         self._row = np.zeros(layout.width, dtype="<f8")
-        self._file = path.open("ab", buffering=0)
+        self._file = _opened(path)
         _claim(self._file, path)
         if keep is not None:
             self._file.truncate(_end_of(path, keep))
@@ -127,6 +128,13 @@ class Log:
             raise InputError(str(self.path), f"cannot be written: {error.strerror}") from error
         if written != len(data):  # what a disk does with its last bytes
             raise InputError(str(self.path), "cannot be written: the disk is full")
+
+
+def _opened(path: Path) -> FileIO:
+    try:
+        return path.open("ab", buffering=0)
+    except OSError as error:
+        raise InputError(str(path), f"cannot be written: {error.strerror}") from error
 
 
 def _claim(file: FileIO, path: Path) -> None:
