@@ -149,6 +149,7 @@ CASES = [
          "by comparing and is no proof of what ADAMS had. For the same reason the generator is a "
          "body on the low-speed shaft there, which rolls with the nacelle; behind its gearbox it "
          "does not, and the second side-side mode is 5 % higher. Tolerance 1.5 %, the difference "
-         "between FAST and ADAMS in the first tower modes. With the shear stiffness of the OpenFAST deck "
-         "(a tenth of EA) and weight, and the gearbox, frequencies fall by up to 3 %, also shown."),
+         "between FAST and ADAMS in the first tower modes. With the shear stiffness of the "
+         "OpenFAST deck (a tenth of EA), weight and the gearbox, frequencies fall by up to 3 %, "
+         "also shown."),
 ]  # fmt: skip

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from galerna import turbine as turbines
 from galerna.contract import Loads, Stations
-from galerna.coupling.flexible import FlexibleMachine
+from galerna.coupling.flexible import FlexibleMachine, tolerance_for
 from galerna.errors import ConvergenceError, InputError
 from galerna.kinematics import PrescribedMotion, PrescribedOperation
 from galerna.signals import Signal
@@ -202,3 +204,12 @@ def test_damping_that_outweighs_the_blades_inertia_in_a_step_converges(damping: 
     for _ in range(25):
         simulation.advance()
     assert drag.calls < 8 * 25
+
+
+def test_a_small_machine_is_brought_as_close_to_balance_as_a_large_one() -> None:
+    """What is left over goes with the weight; a balance to 10 N would be none at all."""
+    system = FlexibleMachine(NREL, []).system
+    small = replace(system, weight=1e-3 * system.weight)
+    assert tolerance_for(system).force == pytest.approx(10.0, rel=0.1)
+    assert tolerance_for(small).force == pytest.approx(1e-3 * tolerance_for(system).force)
+    assert tolerance_for(small).moment == pytest.approx(1e-3 * tolerance_for(system).moment)

@@ -24,17 +24,25 @@ from galerna.structure.integrators import Integrator, Scheme, Tolerance, Trial
 from galerna.structure.joints import Angle
 from galerna.structure.pairs import Integers
 from galerna.structure.placing import placed
-from galerna.structure.system import ARRAYS, Forces, State
+from galerna.structure.system import ARRAYS, Forces, State, System
 from galerna.structure.turbine import TurbineOptions, TurbineSystem, turbine_system
 from galerna.turbine.geometry import part_frames
 from galerna.turbine.model import Turbine
+from galerna.units import STANDARD_GRAVITY
 
 #: what a coupled step leaves out of balance: of responses in turbulence, 0.02 % of their
 #: standard deviation (docs/theory/machine.md)
 TOLERANCE = Tolerance(
     relative=1e-4, displacement=1e-6, rotation=1e-6, velocity=1e-4, angular_velocity=1e-4,
-    force=10.0, moment=10.0, iterations=25,
+    iterations=25,
 )  # fmt: skip
+UNBALANCED = 1.5e-6  #: of the weight: force N, and N m, which a coupled step leaves over
+
+
+def tolerance_for(system: System) -> Tolerance:
+    """When a coupled step of a machine, large or small, has converged."""
+    left = UNBALANCED * STANDARD_GRAVITY * float(system.weight[:, 0].sum())
+    return replace(TOLERANCE, force=left, moment=left)
 
 
 def attach(turbine: Turbine, system: TurbineSystem, group: Sequence[Stations]) -> Attachment:
@@ -120,7 +128,9 @@ class FlexibleMachine:
         )
         self.system = self.parts.system
         self.integrator = Integrator(
-            self.system, scheme or Scheme.generalized_alpha(), tolerance or TOLERANCE
+            self.system,
+            scheme or Scheme.generalized_alpha(),
+            tolerance or tolerance_for(self.system),
         )
         self._riders = [attach(turbine, self.parts, group) for group in stations]
         self.motions = tuple(riders.motion for riders in self._riders)
