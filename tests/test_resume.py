@@ -341,6 +341,7 @@ class Forgetful:
 
 def test_a_new_run_takes_an_old_checkpoint_away(tmp_path):
     stopped(STEADY, tmp_path / "a.nc", 0.5)
+    (tmp_path / "a.nc.checkpoint.unfinished").touch()  # as a run that is killed leaves it
     galerna.run(STEADY, tmp_path / "a.nc", overwrite=True)
     assert [p.name for p in tmp_path.iterdir()] == ["a.nc"]
 

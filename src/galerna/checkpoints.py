@@ -153,7 +153,7 @@ def write(path: Path, origin: Origin, wind: Array, state: Mapping[str, np.ndarra
     """Write a checkpoint, whole or not at all; InputError if the disk does not take it."""
     about = json.dumps({"origin": asdict(origin), "environment": environment()})
     arrays = {f"{STATE}{name}": value for name, value in state.items()}
-    unfinished = path.with_name(path.name + ".unfinished")
+    unfinished = _unfinished(path)
     try:
         with unfinished.open("wb") as file:
             np.savez(file, allow_pickle=False, about=np.array(about), wind=wind, **arrays)
@@ -164,6 +164,16 @@ def write(path: Path, origin: Origin, wind: Array, state: Mapping[str, np.ndarra
     except OSError as error:
         unfinished.unlink(missing_ok=True)
         raise InputError(str(path), f"cannot be written: {error.strerror or error}") from error
+
+
+def remove(path: Path) -> None:
+    """Leave no checkpoint, nor what a run that was killed has begun of one."""
+    path.unlink(missing_ok=True)
+    _unfinished(path).unlink(missing_ok=True)
+
+
+def _unfinished(path: Path) -> Path:
+    return path.with_name(path.name + ".unfinished")
 
 
 def read(result: Path) -> Checkpoint:

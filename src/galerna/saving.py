@@ -12,7 +12,7 @@ from typing import Protocol
 
 import numpy as np
 
-from galerna.checkpoints import Origin, checkpoint_of, wind_samples, write
+from galerna.checkpoints import Origin, checkpoint_of, remove, wind_samples, write
 from galerna.contract import Array
 from galerna.errors import InputError
 from galerna.machine import Machine
@@ -81,7 +81,7 @@ class Checkpointer(Callback):
 
     def remove(self) -> None:
         """Leave no checkpoint."""
-        self.path.unlink(missing_ok=True)
+        remove(self.path)
 
     @cached_property
     def _wind(self) -> Array:

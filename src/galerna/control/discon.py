@@ -67,7 +67,7 @@ class DisconController:
 
     def state(self) -> dict[str, np.ndarray]:
         """What the library was told, a row a call, and a sum over what it answered."""
-        rows = np.frombuffer(bytes(self._told), dtype="<f4").reshape(-1, len(self._swap.told))
+        rows = np.frombuffer(self._told, dtype="<f4").reshape(-1, len(self._swap.told))
         return {
             "told": rows.copy(),
             "answered": np.array(self._answered),
