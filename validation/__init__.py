@@ -9,6 +9,7 @@ from .framework import Case
 
 MODULES = (
     "bem",
+    "bem_tip_node",
     "phase_vi",
     "corrections",
     "turbulence",

@@ -113,15 +113,16 @@ def _compare_span(
 
 def nrel_steady_curve() -> Iterator[Check]:
     """Thrust and power below rated, pitch and thrust above, as the deck's AeroDyn has them."""
-    yield from _steady_curve(_deck_loads, judged=True)
+    yield from steady_curve(_deck_loads, judged=True)
 
 
 def nrel_steady_curve_of_galerna() -> Iterator[Check]:
     """The same with galerna's own sections, whose steady limit is the polar."""
-    yield from _steady_curve(_mean_loads, judged=False)
+    yield from steady_curve(_mean_loads, judged=False)
 
 
-def _steady_curve(loads: Loads, *, judged: bool) -> Iterator[Check]:
+def steady_curve(loads: Loads, *, judged: bool) -> Iterator[Check]:
+    """The same by any way to a mean thrust and torque."""
     turbine = turbines.load("nrel5mw")
     below, pitch_error, above = (BELOW_RATED, PITCH, ABOVE_RATED) if judged else (None,) * 3
     for row in table("nrel5mw_steady.csv"):
@@ -326,7 +327,9 @@ CASES = (
         "potential flow about the tower, angle of attack at the aerodynamic centre, and the "
         "steady section forces of its Beddoes-Leishman model (Minnema and Pierce), which lie "
         "below the polars. Below rated at the table's speed and pitch; above, the pitch is "
-        "trimmed to the table's aerodynamic power.",
+        "trimmed to the table's aerodynamic power. What remains in the thrust, where it fails "
+        "too, is AeroDyn's node at the tip: with its load (bem-nrel5mw-steady-tip-node) the two "
+        "agree within 0.1 % at every wind speed.",
     ),
     Case(
         "bem-nrel5mw-steady-polars",

@@ -48,6 +48,14 @@ def corrected_loads(
     return after[0] / before[0], after[1] / before[1]
 
 
+def section_forces(
+    sections: BladeSections, angle: Array, speed: Array, *, unsteady_model: bool
+) -> tuple[Array, Array]:
+    """Lift and drag coefficient (...,n): the polar's, or those that the model makes of them."""
+    static = _static(sections, angle)
+    return _model(sections, angle, speed, *static) if unsteady_model else static
+
+
 def _static(sections: BladeSections, angle: Array) -> tuple[Array, Array]:
     lift, drag = np.empty_like(angle), np.empty_like(angle)
     for i in range(len(sections)):
