@@ -101,8 +101,8 @@ def steady_curve_with_the_node() -> Iterator[Check]:
 
 NODE_STORY = """
 Where Prandtl's factor is zero AeroDyn's node has an axial induction of one: it meets the rotor's
-own speed alone, at an angle of attack of minus its pitch. Its load is that of the polar there; at
-last, what its half panel is of the thrust.
+own speed alone, at an angle of attack of minus its pitch. Its load is that of the polar there. The
+last row of each wind is what its half panel takes from the thrust.
 """
 CURVE_STORY = """
 bem-nrel5mw-steady once more, with the same tolerances: galerna's loads and that of half a panel at
