@@ -30,8 +30,8 @@ from galerna.turbine.geometry import part_frames
 from galerna.turbine.model import Turbine
 from galerna.units import STANDARD_GRAVITY
 
-#: what a coupled step leaves out of balance: of responses in turbulence, 0.02 % of their
-#: standard deviation (docs/theory/machine.md)
+#: what a coupled step leaves out of balance: of most responses in turbulence, less than 0.05 % of
+#: their standard deviation (docs/theory/structure.md)
 TOLERANCE = Tolerance(
     relative=1e-4, displacement=1e-6, rotation=1e-6, velocity=1e-4, angular_velocity=1e-4,
     iterations=25,
