@@ -11,8 +11,8 @@ u_-1 is the velocity that the same fluid had a step h_-1 before, u_1 the velocit
 eq. (1) takes it; u_1 costs another evaluation and serves the accepted step alone.
 
 Behind the near wake panels are wider than a step, and fluid takes several steps to cross one.
-Rows there can take a new velocity once in that period, in turn, and keep that of the fluid
-in between (`due_rows`, eq. 1): most of a wake then moves at a fraction of the cost.
+Rows there can take a new induced velocity once in that period, in turn, and keep theirs, as seen
+from the rotor, in between (`due_rows`): most of a wake then moves at a fraction of the cost.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from galerna.aero.vortex.rotor_axis import RotorAxis
+from galerna.aero.vortex.thinning import turned
 from galerna.aero.vortex.wake import Wake, interpolated
 from galerna.contract import Array
 from galerna.errors import ConvergenceError
@@ -38,12 +39,13 @@ class Convection:
     """Velocities (K+1,n+1,3) m/s of the vertices of a shed wake, one array a surface.
 
     ``acceleration`` m/s2 of the fluid along its way, None for a first-order scheme; ``axis`` that
-    of the rotor at the shedding.
+    of the rotor at the shedding; ``induced`` (S,n+1,3) m/s at the summed rows, to keep in turn.
     """
 
     velocity: tuple[Array, ...]
     acceleration: tuple[Array, ...] | None = None
     axis: RotorAxis | None = None
+    induced: tuple[Array, ...] = ()
 
     def mean(self, elapsed: float) -> tuple[Array, ...]:
         """Mean velocity over the first ``elapsed`` s, eqs. (1) and (2)."""
@@ -57,29 +59,28 @@ class Convection:
 class Earlier:
     """Velocities (K+1,n+1,3) that the fluid now in a wake's rows had ``step`` s before.
 
-    Row 0 is new fluid, which has no past.
+    Row 0 is new fluid, which has no past. ``induced`` is the velocity at summed rows then, turned
+    on with the rotor.
     """
 
     velocity: tuple[Array, ...]
     step: float
+    induced: tuple[Array, ...] = ()
 
-    def acceleration(
-        self, velocity: Sequence[Array], still: NDArray[np.bool_] | None = None
-    ) -> tuple[Array, ...]:
-        """Backward difference of the fluid's velocity, zero in row 0 and in rows ``still``."""
+    def acceleration(self, velocity: Sequence[Array]) -> tuple[Array, ...]:
+        """Backward difference of the fluid's velocity, zero in row 0."""
         change = tuple(
             (u - past) / self.step for u, past in zip(velocity, self.velocity, strict=True)
         )
         for a in change:
             a[0] = 0.0
-            if still is not None:
-                a[still] = 0.0
         return change
 
 
-def earlier(velocity: Sequence[Array], fraction: Array, step: float) -> Earlier:
+def earlier(convection: Convection, fraction: Array, step: float) -> Earlier:
     """What velocities become for the rows of the wake that Courant numbers (K,) have remade."""
-    return Earlier(tuple(interpolated(u, fraction) for u in velocity), step)
+    velocity = tuple(interpolated(u, fraction) for u in convection.velocity)
+    return Earlier(velocity, step, turned(convection.induced, convection.axis, step))
 
 
 def corrected(start: Sequence[Array], end: Sequence[Array], fraction: Array) -> tuple[Array, ...]:
@@ -112,7 +113,7 @@ def due_rows(ages: Array, sheds: int) -> Integers:
 
 
 def renewed(past: Sequence[Array], velocity: Sequence[Array], rows: Integers) -> tuple[Array, ...]:
-    """Velocities (K+1,n+1,3) that the fluid had in the ``past``, new ones in some ``rows``."""
+    """Velocities (S,n+1,3) of the ``past``, with new ones in some ``rows``."""
     both = []
     for before, new in zip(past, velocity, strict=True):
         both.append(before.copy())

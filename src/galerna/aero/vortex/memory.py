@@ -72,10 +72,12 @@ def to_arrays(memory: Memory) -> dict[str, np.ndarray]:
         arrays["centre"] = memory.wake.centre
     if memory.earlier is not None:
         kinds["earlier"] = memory.earlier.velocity
+        kinds["held"] = memory.earlier.induced
         arrays["earlier_step"] = np.array(memory.earlier.step)
     if memory.convection is not None:
         kinds["velocity"] = memory.convection.velocity
         kinds["acceleration"] = memory.convection.acceleration or ()
+        kinds["induced"] = memory.convection.induced
         axis = memory.convection.axis
         if axis is not None:
             arrays["axis"] = np.concatenate([axis.origin, axis.direction, [axis.speed]])
@@ -98,10 +100,12 @@ def from_arrays(arrays: Mapping[str, np.ndarray], ages: Array) -> Memory:
     rotor = None if axis is None else RotorAxis(axis[:3], axis[3:6], float(axis[6]))
     convection = None
     if velocity := tuple(kind("velocity")):
-        convection = Convection(velocity, tuple(kind("acceleration")) or None, rotor)
+        acceleration = tuple(kind("acceleration")) or None
+        convection = Convection(velocity, acceleration, rotor, tuple(kind("induced")))
     past = None
     if "earlier_step" in arrays:
-        past = Earlier(tuple(kind("earlier")), float(arrays["earlier_step"]))
+        held = tuple(kind("held"))
+        past = Earlier(tuple(kind("earlier")), float(arrays["earlier_step"]), held)
     centre = arrays["centre"].copy() if "centre" in arrays else None
     return Memory(
         Wake(ages, tuple(kind("vertices")), tuple(kind("wake_circulation")), centre),

@@ -87,10 +87,11 @@ class VortexLattice:
         self._tower_wind = TowerWind(inflow, turbine.tower, self.stations) if tower else None
         self._flow = UnsteadyLattice(
             inflow if self._tower_wind is None else self._tower_wind,
-            self.wake_size.ages,
+            self.wake_size.all_ages,
             _unsteady_options(self.options, self.lattice, air_density),
             wake_inflow=inflow if wake_inflow is None else wake_inflow,
             names=self.blades,
+            summed_rows=self.wake_size.rows,
             separation=(
                 blade_separation(self.lattice, turbine.blade, self.blades)
                 if self.options.decambering

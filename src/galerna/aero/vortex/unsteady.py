@@ -37,6 +37,7 @@ from galerna.aero.vortex.shedding import History, Shedding, edge_panels, sheddin
 from galerna.aero.vortex.sheet import Sheet
 from galerna.aero.vortex.surface import Surface, collocation_velocities
 from galerna.aero.vortex.system import BoundSystem
+from galerna.aero.vortex.thinning import Integers
 from galerna.aero.vortex.unsteady_options import UnsteadyOptions
 from galerna.aero.vortex.wake import Wake, courant_numbers
 from galerna.aero.vortex.wake_clock import WakeClock
@@ -73,7 +74,6 @@ class _Trial:
     dt: float
     shed: list[Shedding]
     wake: Wake
-    far: FarWake
     held: _Influences | None = None
     solution: Solution | None = None
 
@@ -92,6 +92,7 @@ class UnsteadyLattice:
     ``ages`` (K+1,) s are those of the rows of the wakes (see ``ages``); no step may be longer than
     ``ages[1]``. ``wake_inflow`` is the wind that moves the wakes, if another one; ``names`` are
     what errors call the surfaces; ``separation`` brings their sections' lift to polars.
+    ``summed_rows`` are those of wakes that induce velocity, all by default: see `thinning`.
     """
 
     def __init__(
@@ -103,12 +104,13 @@ class UnsteadyLattice:
         wake_inflow: Inflow | None = None,
         names: Sequence[str] = (),
         separation: Separation | None = None,
+        summed_rows: Integers | None = None,
     ) -> None:
         self.inflow, self.separation = inflow, separation
         self.options = UnsteadyOptions() if options is None else options
         self.system = BoundSystem(mirror=self.options.mirror)
         self.wake_inflow = inflow if wake_inflow is None else wake_inflow
-        self.clock = WakeClock(self.wake_inflow, ages, self.options, names)
+        self.clock = WakeClock(self.wake_inflow, ages, self.options, names, summed_rows)
         self._memory: Memory | None = None
         self._trial: _Trial | None = None
 
@@ -147,13 +149,7 @@ class UnsteadyLattice:
         total = [i + dt * new.known for i, new in zip(memory.shed, shed, strict=True)]
         wake = self.clock.advanced(memory, memory.elapsed + dt, total)
         self.system.guess(np.concatenate([g.ravel() for g in memory.circulation]))
-        self._trial = _Trial(
-            memory,
-            dt,
-            shed,
-            wake,
-            FarWake(wake, self.options.core, self.clock.field, self.options.tree_error is not None),
-        )
+        self._trial = _Trial(memory, dt, shed, wake)
 
     def solve(self, time: float, surfaces: Sequence[Surface]) -> Solution:
         """The flow about ``surfaces`` where they are at ``time``, the end of the step begun.
@@ -274,8 +270,9 @@ class UnsteadyLattice:
         wind = wind_at(self.inflow, points, time, surfaces, self.clock.names)
         if options.start == "steady" or options.quasi_steady:
             flow = strip_flow(
-                self.system, surfaces, wind, wake, options.core, options.mirror, self.separation
-            )
+                self.system, surfaces, wind, self.clock.thinning.wake(wake), options.core,
+                options.mirror, self.separation,
+            )  # fmt: skip
             wake = steady_wake(wake, [g[-1] for g in flow.circulation])
         else:
             still = np.zeros_like(points)
@@ -296,8 +293,8 @@ class UnsteadyLattice:
         wind = wind_at(self.inflow, points, time, surfaces, self.clock.names)
         if options.quasi_steady:
             return strip_flow(
-                self.system, surfaces, wind, trial.wake, options.core, options.mirror,
-                self.separation,
+                self.system, surfaces, wind, self.clock.thinning.wake(trial.wake), options.core,
+                options.mirror, self.separation,
             )  # fmt: skip
         sheets = trial.wake.sheets(options.core, rows=slice(1))
         edges = [
@@ -307,7 +304,7 @@ class UnsteadyLattice:
         influences = trial.held
         if influences is None:
             influences = _Influences(
-                trial.far.velocity(surfaces, points),
+                self._far_wake(trial.wake).velocity(surfaces, points),
                 edge_influence(surfaces, edges, options.mirror),
             )
         if options.hold_influences:
@@ -315,6 +312,11 @@ class UnsteadyLattice:
         return edge_flow(
             self.system, surfaces, wind, influences.far, edges, influences.edge, self.separation
         )
+
+    def _far_wake(self, wake: Wake) -> FarWake:
+        smooth = self.options.tree_error is not None
+        summed = self.clock.thinning.wake(wake)
+        return FarWake(summed, self.options.core, self.clock.field, smooth)
 
     def _shedding(self, memory: Memory, surfaces: Sequence[Surface], dt: float) -> list[Shedding]:
         assert memory.convection is not None

@@ -13,7 +13,6 @@ from galerna.aero.vortex.convection import (
     corrected,
     due_rows,
     earlier,
-    periods,
     renewed,
     require_calm,
 )
@@ -23,6 +22,7 @@ from galerna.aero.vortex.memory import Memory
 from galerna.aero.vortex.quasi_steady import steady_wake
 from galerna.aero.vortex.sheet import Sheet
 from galerna.aero.vortex.surface import Surface
+from galerna.aero.vortex.thinning import Thinning
 from galerna.aero.vortex.unsteady_options import UnsteadyOptions
 from galerna.aero.vortex.wake import (
     STEP_TOLERANCE,
@@ -39,15 +39,21 @@ class WakeClock:
     """Wakes whose rows have ``ages`` (K+1,) s, moved by the ``wind`` and, if free, by all vortices.
 
     What it knows of a wake is in the `Memory` that it is given. ``names`` of the surfaces that
-    shed are for errors.
+    shed are for errors; ``rows`` are those summed, see `Thinning`.
     """
 
     def __init__(
-        self, wind: Inflow, ages: Array, options: UnsteadyOptions, names: Sequence[str] = ()
+        self,
+        wind: Inflow,
+        ages: Array,
+        options: UnsteadyOptions,
+        names: Sequence[str] = (),
+        rows: Integers | None = None,
     ) -> None:
         self.wind, self.options, self.names = wind, options, tuple(names)
         self.ages = np.asarray(ages, dtype=float)
         courant_numbers(self.ages, 0.0)
+        self.thinning = Thinning(self.ages, rows)
 
     @property
     def step(self) -> float:
@@ -86,39 +92,57 @@ class WakeClock:
             Sheet(Lattice(c, self.options.rings).vertices, g, edge)
             for c, g in zip(memory.corners, memory.circulation, strict=True)
         ]
-        return [*wake.sheets(self.options.core, edge=edge), *bound]
+        return [*self.thinning.wake(wake).sheets(self.options.core, edge=edge), *bound]
 
     def _fluid_velocity(
+        self, wake: Wake, induced: Sequence[Array], time: float, axis: RotorAxis | None
+    ) -> tuple[Array, ...]:
+        """Velocity (K+1,n+1,3) m/s that moves the vertices of a wake.
+
+        ``induced`` (S,n+1,3) m/s is that of the vortices at its summed rows, empty for none.
+        """
+        vertices = self.thinning.wake(wake).vertices
+        everywhere = np.concatenate([x.reshape(-1, 3) for x in vertices])
+        velocity = _like(np.asarray(self.wind.velocity(everywhere, time), dtype=float), vertices)
+        if induced:
+            velocity = [u + v for u, v in zip(velocity, induced, strict=True)]
+        return self.thinning.everywhere(velocity, axis)
+
+    def _induced_velocity(
         self, memory: Memory, wake: Wake, time: float, rows: Integers | None = None
     ) -> tuple[Array, ...]:
-        """Velocity (K+1,n+1,3) m/s that moves the vertices of a wake, or of some ``rows`` alone."""
-        chosen = wake.vertices if rows is None else tuple(x[rows] for x in wake.vertices)
-        everywhere = np.concatenate([x.reshape(-1, 3) for x in chosen])
-        velocity = _like(np.asarray(self.wind.velocity(everywhere, time), dtype=float), chosen)
-        if self.options.free:
-            edge = 0.0 if self.options.core is None else self.options.core.initial_radius
-            field = self.field(self.sheets(memory, wake, edge), self.options.wake_precision)
-            if rows is None:
-                rows = np.arange(len(wake.ages))
-                induced = field.vertex_velocities(range(len(wake.vertices)))
-            else:
-                induced = _like(field.velocity(everywhere), chosen)
-            require_calm(wake, induced, rows, memory.speed, time, self.names)
-            velocity = [u + v for u, v in zip(velocity, induced, strict=True)]
-        return tuple(velocity)
+        """Velocity (S,n+1,3) m/s by all vortices at the summed rows, or at some ``rows`` of them.
+
+        Empty where wakes are not free.
+        """
+        if not self.options.free:
+            return ()
+        edge = 0.0 if self.options.core is None else self.options.core.initial_radius
+        field = self.field(self.sheets(memory, wake, edge), self.options.wake_precision)
+        summed = self.thinning.wake(wake)
+        if rows is None:
+            rows = np.arange(len(summed.ages))
+            induced = field.vertex_velocities(range(len(wake.vertices)))
+        else:
+            chosen = [x[rows] for x in summed.vertices]
+            induced = _like(
+                field.velocity(np.concatenate([x.reshape(-1, 3) for x in chosen])), chosen
+            )
+        require_calm(summed, induced, rows, memory.speed, time, self.names)
+        return tuple(induced)
 
     def convection(self, memory: Memory, time: float, axis: RotorAxis | None) -> Convection:
         """How the wake just shed is going to move."""
         past = memory.earlier
-        if self.options.scheme != "adams_bashforth" or past is None:
-            return Convection(self._fluid_velocity(memory, memory.wake, time), None, axis)
-        if not self.options.multirate:
-            velocity = self._fluid_velocity(memory, memory.wake, time)
-            return Convection(velocity, past.acceleration(velocity), axis)
-        rows = due_rows(self.ages, memory.sheds)
-        new = self._fluid_velocity(memory, memory.wake, time, rows)
-        velocity = renewed(past.velocity, new, rows)
-        return Convection(velocity, past.acceleration(velocity, periods(self.ages) > 1), axis)
+        if past is not None and past.induced and self.options.multirate:
+            rows = due_rows(self.thinning.ages, memory.sheds)
+            new = self._induced_velocity(memory, memory.wake, time, rows)
+            induced = renewed(past.induced, new, rows)
+        else:
+            induced = self._induced_velocity(memory, memory.wake, time)
+        velocity = self._fluid_velocity(memory.wake, induced, time, axis)
+        acceleration = None if past is None else past.acceleration(velocity)
+        return Convection(velocity, acceleration, axis, induced)
 
     def advanced(self, memory: Memory, elapsed: float, shed: Sequence[Array]) -> Wake:
         """The wake ``elapsed`` s after its shedding, with what the edges ``shed`` (n,) in all."""
@@ -141,7 +165,8 @@ class WakeClock:
         assert convection is not None
         fraction = courant_numbers(self.ages, elapsed)
         if self.options.scheme == "heun":
-            end = self._fluid_velocity(memory, wake, time)
+            induced = self._induced_velocity(memory, wake, time)
+            end = self._fluid_velocity(wake, induced, time, convection.axis)
             mean = corrected(convection.velocity, end, fraction)
             better = replace(memory, convection=Convection(mean, None, convection.axis))
             wake = self.wake_at(better)
@@ -149,7 +174,7 @@ class WakeClock:
             wake = steady_wake(wake, [g[-1] for g in memory.circulation])
         past = None
         if self.options.scheme == "adams_bashforth":
-            past = earlier(convection.velocity, fraction, elapsed)
+            past = earlier(convection, fraction, elapsed)
         nothing = [np.zeros_like(i) for i in memory.shed]
         return replace(
             memory, wake=wake, elapsed=0.0, shed=nothing, convection=None, earlier=past,

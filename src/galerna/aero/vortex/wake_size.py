@@ -5,8 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from math import inf, pi
 
+import numpy as np
+
 from galerna.aero.vortex.ages import SLOWEST_TURN, rotor_ages
 from galerna.aero.vortex.options import VortexLatticeOptions
+from galerna.aero.vortex.thinning import Integers, summed_rows
 from galerna.contract import Array
 from galerna.errors import InputError
 from galerna.units import DEG
@@ -17,9 +20,13 @@ SLOWEST_WIND = 0.01  #: over the tip speed; a slower one leaves a wake in the ro
 
 @dataclass(frozen=True, eq=False)
 class WakeSize:
-    """Ages (K+1,) s of the rows of a wake, and what they are to the rotor."""
+    """Ages (S,) s of the summed rows of a wake, and what they are to the rotor.
+
+    ``rows`` (S,) are their numbers among all rows, which are a step apart.
+    """
 
     ages: Array
+    rows: Integers
     diameters: float
     revolutions: float
 
@@ -27,6 +34,11 @@ class WakeSize:
     def step(self) -> float:
         """Time s in which a row is shed."""
         return float(self.ages[1])
+
+    @property
+    def all_ages(self) -> Array:
+        """Ages (K+1,) s of all rows."""
+        return self.step * np.arange(self.rows[-1] + 1.0)
 
 
 def wake_size(
@@ -52,7 +64,7 @@ def wake_size(
     if options.wake_revolutions is not None:
         speed = max(abs(wind_speed), 0.05 * rotor_speed * radius)
         diameters = options.wake_revolutions * 2.0 * pi / turn * speed / (2.0 * radius)
-    ages = rotor_ages(
+    wanted = rotor_ages(
         rotor_speed,
         wind_speed,
         radius,
@@ -62,10 +74,11 @@ def wake_size(
         growth=options.wake_growth,
         widest_deg=options.wake_widest_deg,
     )
-    ages[1:] *= step / ages[1]  # to the last bit the step itself
+    rows = summed_rows(wanted)
+    ages = step * rows.astype(float)
     length = float(ages[-1])
     return WakeSize(
-        ages, length * abs(wind_speed) / (2.0 * radius), length * rotor_speed / (2.0 * pi)
+        ages, rows, length * abs(wind_speed) / (2.0 * radius), length * rotor_speed / (2.0 * pi)
     )
 
 
