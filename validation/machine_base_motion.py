@@ -173,9 +173,10 @@ says, a mistake in the tower's mass. 30 s settle, then four periods of 0.034 Hz 
 """
 
 ROLL_STORY = """
-In roll the hub moves sideways by 0.65 m/s, 1 % of the blades' speed, which cannot add half to the
-deviation out of plane; in the dissertation the tower's own bending is as large a peak as the roll.
-galerna starts in equilibrium, so that the tower hardly rings.
+In roll the hub moves sideways by 0.65 m/s, 1 % of the blades' speed, which is little for half as
+much again out of plane. In the dissertation's spectra the tower's own bending is as large a peak
+as the roll, and galerna starts in equilibrium: a tower that still rings from its start may be what
+the dissertation's figures add. That was not tried.
 """
 
 CASES = (
