@@ -139,8 +139,8 @@ class VortexLatticeOptions(_Block):
     )
     wake_multirate: bool = Field(
         default=True,
-        description="Whether rows behind wide wake panels get a new velocity only when the fluid "
-        "has crossed these; with the scheme of Adams and Bashforth.",
+        description="Whether rows behind wide wake panels get a new induced velocity only when the "
+        "fluid has crossed these; with the scheme of Adams and Bashforth.",
     )
     wake_turbulence: bool = Field(
         default=True, description="Whether turbulence moves the wake too, or its mean wind alone."

@@ -210,7 +210,8 @@ class UnsteadyLattice:
     def sheets(self) -> list[Sheet]:
         """The wakes, then the bound vortices, at the end of the last accepted step."""
         memory = self._accepted()
-        return self.clock.sheets(memory, self.clock.wake_at(memory), 0.0)
+        summed = self.clock.thinning.wake(self.clock.wake_at(memory))
+        return self.clock.sheets(memory, summed, 0.0)
 
     def velocity(self, points: Array, time: float) -> Array:
         """Velocity (...,3) m/s of wind and vortices at points (...,3) m, after an accepted step."""

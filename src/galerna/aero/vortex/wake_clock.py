@@ -86,22 +86,22 @@ class WakeClock:
             sheets, error=options.tree_error, precision=precision, mirror=options.mirror
         )
 
-    def sheets(self, memory: Memory, wake: Wake, edge: float) -> list[Sheet]:
-        """Wakes and bound vortices, which have a core of radius ``edge`` m."""
+    def sheets(self, memory: Memory, summed: Wake, edge: float) -> list[Sheet]:
+        """Wakes of ``summed`` rows, and bound vortices, which have a core of radius ``edge`` m."""
         bound = [
             Sheet(Lattice(c, self.options.rings).vertices, g, edge)
             for c, g in zip(memory.corners, memory.circulation, strict=True)
         ]
-        return [*self.thinning.wake(wake).sheets(self.options.core, edge=edge), *bound]
+        return [*summed.sheets(self.options.core, edge=edge), *bound]
 
     def _fluid_velocity(
-        self, wake: Wake, induced: Sequence[Array], time: float, axis: RotorAxis | None
+        self, summed: Wake, induced: Sequence[Array], time: float, axis: RotorAxis | None
     ) -> tuple[Array, ...]:
         """Velocity (K+1,n+1,3) m/s that moves the vertices of a wake.
 
         ``induced`` (S,n+1,3) m/s is that of the vortices at its summed rows, empty for none.
         """
-        vertices = self.thinning.wake(wake).vertices
+        vertices = summed.vertices
         everywhere = np.concatenate([x.reshape(-1, 3) for x in vertices])
         velocity = _like(np.asarray(self.wind.velocity(everywhere, time), dtype=float), vertices)
         if induced:
@@ -109,7 +109,7 @@ class WakeClock:
         return self.thinning.everywhere(velocity, axis)
 
     def _induced_velocity(
-        self, memory: Memory, wake: Wake, time: float, rows: Integers | None = None
+        self, memory: Memory, summed: Wake, time: float, rows: Integers | None = None
     ) -> tuple[Array, ...]:
         """Velocity (S,n+1,3) m/s by all vortices at the summed rows, or at some ``rows`` of them.
 
@@ -118,11 +118,10 @@ class WakeClock:
         if not self.options.free:
             return ()
         edge = 0.0 if self.options.core is None else self.options.core.initial_radius
-        field = self.field(self.sheets(memory, wake, edge), self.options.wake_precision)
-        summed = self.thinning.wake(wake)
+        field = self.field(self.sheets(memory, summed, edge), self.options.wake_precision)
         if rows is None:
             rows = np.arange(len(summed.ages))
-            induced = field.vertex_velocities(range(len(wake.vertices)))
+            induced = field.vertex_velocities(range(len(summed.vertices)))
         else:
             chosen = [x[rows] for x in summed.vertices]
             induced = _like(
@@ -133,14 +132,14 @@ class WakeClock:
 
     def convection(self, memory: Memory, time: float, axis: RotorAxis | None) -> Convection:
         """How the wake just shed is going to move."""
-        past = memory.earlier
+        past, summed = memory.earlier, self.thinning.wake(memory.wake)
         if past is not None and past.induced and self.options.multirate:
             rows = due_rows(self.thinning.ages, memory.sheds)
-            new = self._induced_velocity(memory, memory.wake, time, rows)
+            new = self._induced_velocity(memory, summed, time, rows)
             induced = renewed(past.induced, new, rows)
         else:
-            induced = self._induced_velocity(memory, memory.wake, time)
-        velocity = self._fluid_velocity(memory.wake, induced, time, axis)
+            induced = self._induced_velocity(memory, summed, time)
+        velocity = self._fluid_velocity(summed, induced, time, axis)
         acceleration = None if past is None else past.acceleration(velocity)
         return Convection(velocity, acceleration, axis, induced)
 
@@ -165,8 +164,9 @@ class WakeClock:
         assert convection is not None
         fraction = courant_numbers(self.ages, elapsed)
         if self.options.scheme == "heun":
-            induced = self._induced_velocity(memory, wake, time)
-            end = self._fluid_velocity(wake, induced, time, convection.axis)
+            summed = self.thinning.wake(wake)
+            induced = self._induced_velocity(memory, summed, time)
+            end = self._fluid_velocity(summed, induced, time, convection.axis)
             mean = corrected(convection.velocity, end, fraction)
             better = replace(memory, convection=Convection(mean, None, convection.axis))
             wake = self.wake_at(better)
