@@ -145,8 +145,8 @@ def _correlations(result: xarray.Dataset, code: str, source: str) -> Iterator[Ch
 STORY = """
 Flexible, quasi-steady sections that read their angle of attack at the aerodynamic centre, no tower
 influence, as in the deck of the reference; ROSCO and its input are those of its wheel. Step
-0.02 s, the reference's 0.01 s. Judged against BeamDyn, which twists; ElastoDyn's modes do not and need
-0.85 deg more pitch at 18 m/s. What is known of the reference: BeamDyn at order 5 is 3.6 % too
+0.02 s, the reference's 0.01 s. Judged against BeamDyn, which twists; ElastoDyn's modes do not and
+need 0.85 deg more pitch at 18 m/s. What is known of the reference: BeamDyn at order 5 is 3.6 % too
 stiff under a tip load of 50 kN, and its blades lack the report's mass factor of 1.045, which shows
 in the weight's part of the in-plane moment. At high pitch the reference loses thrust at its very
 tip (bem-openfast-tip-node): AeroDyn's last node stands where the tip loss is total and carries
@@ -179,7 +179,7 @@ falls along what seems ROSCO's limit of peak shaving, the same in all three code
 first the rotor of galerna slows, by 0.1 to 0.3 rpm more, then torque and power follow by ROSCO's
 law: the aerodynamic torque differs. Why is open. With dynamic inflow the deviations come within
 6 % of BeamDyn's (power 59 kW, rotor speed 0.198 rpm) and power correlates by 0.94 instead of 0.77,
-but rotor speed with ElastoDyn's by 0.943 instead of 0.967, and in steady 18 m/s the deviation of
+but rotor speed with ElastoDyn's by 0.943 instead of 0.965, and in steady 18 m/s the deviation of
 the root moment over a turn is 16 % too large instead of 4 % too small (in 12 m/s 4 % too large
 instead of 15 % too small); a rigid rotor driven by ElastoDyn's own
 speed and pitch shows 0.15 of the lag's effect in its torque. So the quasi-steady wake stays.
