@@ -9,7 +9,7 @@ from galerna.aero.vortex.ages import growing_ages
 from galerna.aero.vortex.cores import VortexCore
 from galerna.aero.vortex.rotor_axis import RotorAxis
 from galerna.aero.vortex.surface import Surface
-from galerna.aero.vortex.thinning import Thinning, summed_rows, turned
+from galerna.aero.vortex.thinning import Integers, Thinning, summed_rows, turned
 from galerna.aero.vortex.unsteady import UnsteadyLattice, UnsteadyOptions
 from galerna.aero.vortex.wake import helical_wake, straight_wake
 from galerna.contract import Array
@@ -45,15 +45,22 @@ class Steady:
         return np.broadcast_to([6.0, 0.0, 0.0], points.shape).copy()
 
 
-def circulation_after(turns: float, ages: Array, *, multirate: bool = False, rows=None) -> Array:  # type: ignore[no-untyped-def]
-    """What one blade's rings hold after so many turns in steady wind, by a free wake."""
+def flow(rows: Integers | None = FEW, *, multirate: bool = False) -> UnsteadyLattice:
+    """A rotor with a free wake in steady wind."""
     options = UnsteadyOptions(core=VortexCore(0.2), multirate=multirate)
-    lattice = UnsteadyLattice(Steady(), ages, options, summed_rows=rows)
-    dt = float(ages[1])
-    for i in range(round(2.0 * np.pi * turns / (AXIS.speed * dt))):
-        lattice.begin_step(i * dt, dt, rotor(i * dt), AXIS)
-        lattice.end_step((i + 1) * dt, rotor((i + 1) * dt))
-    return lattice.sheets()[-1].circulation
+    return UnsteadyLattice(Steady(), FREE, options, summed_rows=rows)
+
+
+def march(lattice: UnsteadyLattice, steps: range) -> UnsteadyLattice:
+    for i in steps:
+        lattice.begin_step(i * STEP, STEP, rotor(i * STEP), AXIS)
+        lattice.end_step((i + 1) * STEP, rotor((i + 1) * STEP))
+    return lattice
+
+
+def circulation(lattice: UnsteadyLattice, turns: float) -> Array:
+    """What one blade's rings hold after so many turns."""
+    return march(lattice, range(round(2.0 * np.pi * turns / STEP))).sheets()[-1].circulation
 
 
 def test_a_thinned_wake_keeps_circulation_over_age() -> None:
@@ -111,7 +118,7 @@ def test_what_is_kept_turns_with_the_rotor() -> None:
 
 
 def test_a_swinging_circulation_stays_as_it_was_shed() -> None:
-    """With a period of 8 panels at the widest; rows that are remade lose most of its swing."""
+    """With a period of 8 panels at the widest; rows that are remade miss 0.3 of its amplitude."""
     still = [np.zeros((len(AGES), 2, 3))]
     kept, remade = (
         straight_wake(a, [np.zeros((2, 3))], [np.ones((2, 3))]) for a in (AGES, GROWING)
@@ -131,17 +138,23 @@ def test_a_swinging_circulation_stays_as_it_was_shed() -> None:
 
 def test_few_rows_serve_a_free_wake() -> None:
     """Rows up to 30 degrees apart give the blades the circulation that all rows give, to 0.5 %."""
-    equal, thin = (circulation_after(1.5, FREE, rows=rows) for rows in (None, FEW))
+    equal, thin = (circulation(flow(rows), 1.5) for rows in (None, FEW))
     assert not np.array_equal(equal, thin)
     assert thin == pytest.approx(equal, rel=0.005)
 
 
 def test_rows_in_turn_change_nothing_that_is_steady() -> None:
-    every, turn = (
-        circulation_after(1.0, FREE, multirate=multirate, rows=FEW) for multirate in (False, True)
-    )
+    every, turn = (circulation(flow(multirate=multirate), 1.0) for multirate in (False, True))
     assert not np.array_equal(every, turn)
     assert turn == pytest.approx(every, rel=1e-3)
+
+
+def test_rows_that_are_summed_in_turn_resume_to_the_bit() -> None:
+    whole, other = march(flow(multirate=True), range(9)), flow(multirate=True)
+    other.restore(march(flow(multirate=True), range(5)).state())
+    march(other, range(5, 9))
+    for ours, theirs in zip(other.wake().vertices, whole.wake().vertices, strict=True):
+        assert np.array_equal(ours, theirs)
 
 
 @pytest.mark.parametrize("rows", [[0, 2, 65], [0, 1, 59], [0, 1, 1, 65]])

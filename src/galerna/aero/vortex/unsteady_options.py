@@ -21,9 +21,9 @@ class UnsteadyOptions:
     ``convection.SCHEMES``. ``core`` is that of the wake's vortices, None the singular vortex.
     ``tree_error`` is the relative error of the fast summation, None sums directly;
     ``wake_precision`` is of the velocities that wakes induce on wakes. With ``multirate`` rows
-    behind wide panels get a new velocity when fluid has crossed these, in the scheme of Adams
-    and Bashforth. ``start`` "steady" begins with the wake of the steady flow, "impulsive" without
-    vortices in it. ``quasi_steady`` gives
+    behind wide panels get a new induced velocity when fluid has crossed these, in the scheme of
+    Adams and Bashforth. ``start`` "steady" begins with the wake of the steady flow, "impulsive"
+    without vortices in it. ``quasi_steady`` gives
     the whole wake the present circulation. ``hold_influences`` takes from the first ``solve`` of a
     step, for all others, what vortices of circulation 1 do to the boundary condition, and the
     velocity by the wake but for its first panels: iterations of a coupling move the surfaces
