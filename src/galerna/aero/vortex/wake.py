@@ -124,15 +124,14 @@ class Wake:
     ) -> list[Sheet]:
         """What induces velocity: a sheet of each surface, of the panels ``rows`` alone."""
         first, last, _ = rows.indices(len(self.ages) - 1)
+        vertices = tuple(x[: last + 1] for x in self.vertices)
+        circulation = tuple(g[:last] for g in self.circulation)
+        newer = replace(
+            self, ages=self.ages[: last + 1], vertices=vertices, circulation=circulation
+        )
         return [
-            Sheet(
-                x[first : last + 1],
-                g[first:last],
-                r if isinstance(r, float) else r[first : last + 1],
-            )
-            for x, g, r in zip(
-                self.vertices, self.circulation, self.core_radius(core, edge), strict=True
-            )
+            Sheet(x[first:], g[first:], r if isinstance(r, float) else r[first:])
+            for x, g, r in zip(vertices, circulation, newer.core_radius(core, edge), strict=True)
         ]
 
 
