@@ -8,6 +8,7 @@ from galerna.errors import InputError
 from galerna.report.style import (
     COLOURS,
     galerna_style,
+    is_rigid,
     label,
     new_figure,
     shown,
@@ -63,12 +64,13 @@ def rotor_figure(
 ) -> Figure:
     """Panels of channels over time, one below the other; blades share a panel.
 
-    What does not change is told in the title. Raises InputError if the result has none
-    of the channels.
+    What does not change is told in the title; displacements of rigid parts are left out beside
+    others. Raises InputError if the result has none of the channels.
     """
     present = [name for name in channels if name in dataset and dataset[name].ndim <= 2]
     if not present:
         raise InputError("plot", f"the result has none of the channels {', '.join(channels)}")
+    present = [name for name in present if not is_rigid(dataset[name])] or present
     constant = [name for name in present if not varies(dataset[name])]
     names = [name for name in present if name not in constant] or present
     with galerna_style():
@@ -84,7 +86,7 @@ def rotor_figure(
 def _figure_of(variable: xarray.DataArray) -> str:
     """A channel that does not change, in words."""
     values, unit = shown(variable)
-    return f"{variable.attrs.get('long_name', variable.name)} {values.flat[0]:.4g} {unit}"
+    return f"{variable.attrs.get('long_name', variable.name)} {values.flat[0]:z.4g} {unit}"
 
 
 def _draw(ax: Axes, variable: xarray.DataArray) -> None:

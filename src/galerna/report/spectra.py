@@ -92,7 +92,7 @@ def spectra_figure(dataset: xarray.Dataset, channels: tuple[str, ...] = SPECTRA_
             ax.set_xlim(frequency[0], frequency[-1])
             ax.set_ylim(*_limits(density))
             ax.yaxis.set_minor_locator(NullLocator())
-            _mark_rotation(ax, dataset, name, frequency[-1])
+            _mark_rotation(ax, dataset, name, frequency)
         axes[-1, 0].set_xlabel("Frequency [Hz]")
         figure.suptitle(title_of(dataset, "Power spectral density"))
     return figure
@@ -106,14 +106,18 @@ def _limits(density: Array) -> tuple[float, float]:
     return bottom * 10.0 ** (-0.04 * span), peak * 10.0 ** (0.18 * span)
 
 
-def _mark_rotation(ax: Axes, dataset: xarray.Dataset, channel: str, highest: float) -> None:
-    """Lines up to 9P for three blades: at 1P and the blades' passing, on a blade more of them."""
+def _mark_rotation(ax: Axes, dataset: xarray.Dataset, channel: str, frequency: Array) -> None:
+    """Lines up to 9P for three blades: at 1P and the blades' passing, on a blade more of them.
+
+    A mark outside the axes would take the room of the panels: a parked rotor has its 1P there.
+    """
+    lowest, highest = frequency[0], frequency[-1]
     rotation, blades = _rotation(dataset), dataset.sizes.get("blade", 3)
     multiples = {1, blades, 2 * blades, 3 * blades}
     if "blade" in dataset[channel].dims:
         multiples |= {2, 3, 4}
     for multiple in sorted(multiples):
-        if 0.0 < multiple * rotation < highest:
+        if lowest <= multiple * rotation < highest:
             ax.axvline(multiple * rotation, color=GREY, lw=0.8, ls=(0, (4, 3)), zorder=0)
             ax.annotate(
                 f"{multiple}P",

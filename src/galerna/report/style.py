@@ -21,6 +21,7 @@ COLOURS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE)
 GREY = "#6f6f6f"
 WIND_COLOURS = "viridis"
 DOTS_PER_INCH = 150
+SMALLEST_DISPLACEMENT = 1e-9  #: m, below which it is rounding
 
 _SETTINGS: Any = {
     "axes.spines.top": False,
@@ -28,6 +29,7 @@ _SETTINGS: Any = {
     "axes.grid": True,
     "axes.titlesize": "medium",
     "axes.titlelocation": "left",
+    "axes.formatter.useoffset": False,
     "grid.color": "#e4e4e4",
     "grid.linewidth": 0.7,
     "lines.linewidth": 1.1,
@@ -75,6 +77,13 @@ def varies(variable: xarray.DataArray) -> bool:
     """Whether a channel changes over time by more than rounding."""
     values = variable.values.astype(float)
     return bool((values.std(axis=0) > 1e-9 * np.abs(values.mean(axis=0))).any())
+
+
+def is_rigid(variable: xarray.DataArray) -> bool:
+    """Whether a channel is the displacement of a part that does not move: rounding alone."""
+    if variable.attrs.get("units") != "m":
+        return False
+    return bool((np.abs(variable.values) < SMALLEST_DISPLACEMENT).all())
 
 
 def label(variable: xarray.DataArray, unit: str) -> str:

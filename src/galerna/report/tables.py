@@ -13,7 +13,7 @@ from rich.table import Table
 
 from galerna.channel_names import openfast_names
 from galerna.report.rotor import main_channels
-from galerna.report.style import shown
+from galerna.report.style import is_rigid, shown
 
 if TYPE_CHECKING:
     import xarray
@@ -41,17 +41,20 @@ def print_table(made: Table) -> None:
 
 
 def statistics(dataset: xarray.Dataset) -> Table:
-    """Mean, standard deviation and extremes of the main channels; of blades, over all blades."""
+    """Mean, standard deviation and extremes of the main channels; of blades, over all blades.
+
+    Displacements of rigid parts are left out.
+    """
     name = dataset.attrs.get("case_name", "result")
     made = table(name, "quantity", "unit", "mean", "std", "min", "max", numbers_from=2)
     for channel in main_channels(dataset):
-        if channel not in dataset:
+        if channel not in dataset or is_rigid(dataset[channel]):
             continue
         values, unit = shown(dataset[channel])
         meaning = str(dataset[channel].attrs.get("long_name", channel))
         spread = values.std(axis=0).mean() if np.ptp(values) > 1e-9 * np.abs(values).max() else 0.0
         figures = (values.mean(), spread, values.min(), values.max())
-        made.add_row(meaning, escape(unit), *(f"{figure:.4g}" for figure in figures))
+        made.add_row(meaning, escape(unit), *(f"{figure:z.4g}" for figure in figures))
     return made
 
 
