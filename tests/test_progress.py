@@ -7,7 +7,7 @@ from machines import Spring
 from rich.console import Console
 from test_simulation import spinning
 
-from galerna.progress import ProgressBar, ProgressLine, best
+from galerna.progress import ProgressBar, ProgressLine, best, machine
 
 
 class EagerLine(ProgressLine):
@@ -58,3 +58,17 @@ class Failing(EagerLine):
 
     def accepted(self, simulation):
         raise ZeroDivisionError
+
+
+class Recorded:
+    """A simulation that has nothing but a record."""
+
+    def __init__(self, **record):
+        self.record = lambda: record
+
+
+def test_the_power_is_the_generator_s_where_there_is_one():
+    assert machine(Recorded(rotor_power=5.297e6)) == "5.297 MW aerodynamic"
+    both = Recorded(rotor_power=5.297e6, electrical_power=5e6)
+    assert machine(both) == "5.000 MW electrical"
+    assert machine(Recorded(electrical_power=-0.0)) == "0.000 MW electrical"

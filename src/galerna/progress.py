@@ -79,15 +79,20 @@ class ProgressBar(Pace):
 
 
 def machine(simulation: Simulation) -> str:
-    """Rotor speed, pitch and power of the accepted state, as far as they are known."""
+    """Rotor speed, pitch and power of the accepted state, as far as they are known.
+
+    The power is the generator's where there is one.
+    """
     record = simulation.record()
     shown = []
     if "rotor_speed" in record:
         shown.append(f"{np.mean(record['rotor_speed']) / RPM:.2f} rpm")
     if "pitch" in record:
         shown.append(f"{np.mean(record['pitch']) / DEG:.2f} deg")
-    if "rotor_power" in record:
-        shown.append(f"{np.mean(record['rotor_power']) / 1e6:.3f} MW")
+    for name, kind in (("electrical_power", "electrical"), ("rotor_power", "aerodynamic")):
+        if name in record:
+            shown.append(f"{np.mean(record[name]) / 1e6:z.3f} MW {kind}")
+            break
     return "  ".join(shown)
 
 
