@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 from typer.testing import CliRunner
 
-from galerna.case import load
+from galerna.case import CaseError, load
 from galerna.channel_list import channels_of, chosen
 from galerna.channel_names import ALIASES, matching, nearest, shown_openfast
 from galerna.cli import app
 from galerna.contract import Channel
 from galerna.errors import InputError
+from galerna.machine import build_machine
 
 CHANNELS = (
     Channel("electrical_power", "W", "power", (), "GenPwr", "kW", 1e-3),
@@ -45,6 +48,28 @@ def test_a_name_that_nobody_has_is_answered_with_the_nearest() -> None:
     assert "galerna channels" in nearest("qqqq", CHANNELS)
 
 
+@pytest.mark.parametrize(
+    ("pattern", "expected"),
+    [
+        ("blade_rot*", "'blade_root*'"),
+        ("*_indction", "'*induction'"),
+        ("tip_*_displacment", "'tip_out_of_plane_displacement'"),
+        ("electricl_powe?", "'electrical_power'"),
+    ],
+)
+def test_a_pattern_s_letters_are_compared_without_its_wildcards(
+    pattern: str, expected: str
+) -> None:
+    assert matching(pattern, CHANNELS) == ()
+    assert expected in nearest(pattern, CHANNELS)
+    assert "galerna channels" in nearest("qqqq*", CHANNELS)
+
+
+def test_what_is_meant_names_channels() -> None:
+    for name in re.findall(r"'([^']+)'", nearest("blade_rot*", CHANNELS)):
+        assert matching(name, CHANNELS)
+
+
 MACHINE = {
     "galerna": 1, "turbine": "nrel5mw", "duration_s": 1.0, "inflow": {"wind_speed_m_s": 10.0},
     "structure": {"blade_elements": 4, "tower_elements": 3}, "control": "baseline",
@@ -73,6 +98,19 @@ def test_a_pattern_that_names_nothing_is_refused() -> None:
     with pytest.raises(InputError, match="no channel") as refused:
         chosen(load(MACHINE), "tower_bse_fore_aft_moment")
     assert "tower_base_fore_aft_moment" in str(refused.value)
+
+
+def test_every_name_that_a_case_asks_for_in_vain_is_told() -> None:
+    wanted = ["rotor_thrust", "rotor_trust", "nope_*", "rotor_pwr"]
+    case = load({
+        "galerna": 1, "turbine": "nrel5mw", "duration_s": 1.0, "inflow": {"wind_speed_m_s": 8.0},
+        "operation": {"rotor_speed_rpm": 9.0}, "outputs": {"channels": wanted},
+    })  # fmt: skip
+    with pytest.raises(CaseError) as refused:
+        build_machine(case)
+    paths = [problem.path for problem in refused.value.problems]
+    assert paths == [("outputs", "channels", i) for i in (1, 2, 3)]
+    assert "did you mean 'rotor_thrust'" in str(refused.value)
 
 
 def test_the_command_prints_a_line_for_every_channel() -> None:

@@ -62,8 +62,18 @@ def nearest(pattern: str, channels: Iterable[Channel]) -> str:
     if any(channel.name.startswith(pattern) for channel in listed):
         return f"did you mean '{pattern}*'?"
     names = {channel.name for channel in listed} | {shown_openfast(channel) for channel in listed}
-    hint = did_you_mean(pattern, names - {""})
+    hint = did_you_mean(re.sub(r"[*?]", "", pattern), _meant(pattern, names - {""}))
     return hint if hint.startswith("did") else "galerna channels CASE lists them"
+
+
+def _meant(pattern: str, names: set[str]) -> set[str]:
+    """What a pattern may mean: names, and their first or last words where it begins or ends so."""
+    words = [name.split("_") for name in names]
+    if pattern.endswith("*"):
+        names = names | {"_".join(w[:n]) + "*" for w in words for n in range(1, len(w))}
+    if pattern.startswith("*"):
+        names = names | {"*" + "_".join(w[n:]) for w in words for n in range(1, len(w))}
+    return names
 
 
 def shown_openfast(channel: Channel) -> str:

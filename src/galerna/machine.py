@@ -14,7 +14,7 @@ from galerna import turbine as turbines
 from galerna.aero.bem.model import BladeElementMomentum
 from galerna.aero.bem.options import BemOptions
 from galerna.aero.body_drag import BodyDrag
-from galerna.case import Case, LoadedCase, Series, parse
+from galerna.case import Case, CaseError, LoadedCase, Problem, Series, parse
 from galerna.channel_names import matching, nearest
 from galerna.compiling import watch
 from galerna.contract import Array, Channel, LoadModel
@@ -281,17 +281,22 @@ def _signal(value: float | Series, unit: float) -> Signal:
 
 
 def _chosen_channels(case: LoadedCase, simulation: Simulation) -> tuple[Channel, ...]:
-    """The channels that the case's patterns name; InputError for a pattern that names none."""
+    """The channels that the case's patterns name; CaseError with every one that names none."""
     patterns, available = case.case.outputs.channels, simulation.channels
-    found: set[str] = set()
-    for i, pattern in enumerate(patterns):
-        chosen = matching(pattern, available)
-        if not chosen:
-            with case.blame("outputs", "channels", i):
-                hint = nearest(pattern, available)
-                raise InputError(repr(pattern), "no channel has this name", hint)
-        found.update(channel.name for channel in chosen)
-    return tuple(channel for channel in available if channel.name in found)
+    found = [matching(pattern, available) for pattern in patterns]
+    problems = [
+        Problem(
+            ("outputs", "channels", i),
+            f"{pattern!r}: no channel has this name",
+            nearest(pattern, available),
+        )
+        for i, (pattern, chosen) in enumerate(zip(patterns, found, strict=True))
+        if not chosen
+    ]
+    if problems:
+        raise CaseError(case.document, problems)
+    names = {channel.name for chosen in found for channel in chosen}
+    return tuple(channel for channel in available if channel.name in names)
 
 
 class HubWindProbe:
