@@ -28,6 +28,18 @@ def steady(wind_speed):
     return {"inflow": wind, "operation": {"operating_point": "steady"}}
 
 
+def swinging(frequency, time_step):
+    swing = {"amplitude": 0.1, "frequency_hz": frequency}
+    slow = {"rotor_speed_rpm": 6.0, "pitch_deg": 0.0}  # few degrees of azimuth in a step
+    steps = {"time_step_s": time_step, "duration_s": 10 * time_step}
+    return {"base_motion": {"surge_m": swing, "heave_m": 1.0}, "operation": slow, **steps}
+
+
+def stopping_at(time):
+    event = {"time_s": time, "mode": "normal_stop"}
+    return {"structure": "rigid", "control": {"model": "baseline", "events": [event]}}
+
+
 def test_a_plain_case_raises_none():
     assert doubts() == []
 
@@ -46,6 +58,8 @@ def test_a_plain_case_raises_none():
             {"structure": "flexible", "time_step_s": 0.17, "duration_s": 1.7},
             "edgewise bending of the blades takes 0.948 s, 5.6 time steps",
         ),
+        (swinging(1.0, 0.2), "surge_m: a swing takes 1 s, 5 time steps: below 6"),
+        (stopping_at(2.0), "normal_stop at 2 s does not come: the run ends at 2 s"),
         (steady(2.0), "2 m/s is below cut-in, 3 m/s"),
         (steady(26.0), "26 m/s is above cut-out, 25 m/s"),
     ],
@@ -64,6 +78,8 @@ def test_each_doubt_is_said_alone(changes, expected):
         {"operation": operation(pitch_deg=-10.0)},
         {"operation": operation(pitch_deg=100.0)},
         {"time_step_s": 0.18, "duration_s": 1.8},
+        swinging(1.0, 1.0 / 6.0),
+        stopping_at(1.9),
         steady(3.0),
         steady(25.0),
         {"inflow": {"wind_speed_m_s": 40.0}},  # given speed and pitch: a parked turbine, perhaps

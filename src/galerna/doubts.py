@@ -8,6 +8,8 @@ import numpy as np
 
 from galerna.aero.vortex.options import VortexLatticeOptions
 from galerna.case import Case
+from galerna.case.options import BaseMotion, Harmonic
+from galerna.control.options import BaselineOptions
 from galerna.kinematics import PrescribedOperation
 from galerna.structure.options import StructureOptions
 from galerna.turbine.model import Turbine
@@ -40,6 +42,15 @@ def doubts(
         yield from _about_step(turbine, case.structure, case.time_step_s)
     if turbine.platform is not None and case.base_motion is None:
         yield "the platform is held still: no hydrodynamics yet"
+    if case.base_motion is not None:
+        yield from _about_base_motion(case.base_motion, case.time_step_s)
+    if isinstance(case.control, BaselineOptions):
+        for event in case.control.events:
+            if event.time_s >= case.duration_s:
+                yield (
+                    f"the control event {event.mode} at {event.time_s:g} s does not come: "
+                    f"the run ends at {case.duration_s:g} s"
+                )
 
 
 def _about_speed(turbine: Turbine, speeds: np.ndarray, time_step: float) -> Iterator[str]:
@@ -74,6 +85,20 @@ def _about_step(turbine: Turbine, parts: StructureOptions, time_step: float) -> 
             f"the first {name} takes {period:.3g} s, {period / time_step:.2g} time steps: it is "
             f"hardly followed; time_step_s: {period / (2 * STEPS_PER_PERIOD):.1g} would do"
         )
+
+
+def _about_base_motion(motion: BaseMotion, time_step: float) -> Iterator[str]:
+    from galerna.coupling.step_size import STEPS_PER_PERIOD
+
+    for key, value in motion:
+        if not isinstance(value, Harmonic):
+            continue
+        steps = 1.0 / (value.frequency_hz * time_step)
+        if steps < STEPS_PER_PERIOD * (1.0 - 1e-9):
+            yield (
+                f"base_motion, {key}: a swing takes {1.0 / value.frequency_hz:.3g} s, {steps:.2g} "
+                f"time steps: below {STEPS_PER_PERIOD} it is hardly followed"
+            )
 
 
 def _about_attached_flow(turbine: Turbine, speeds: np.ndarray, mean_wind: float) -> Iterator[str]:
