@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from galerna.errors import InputError
+from galerna.validating import judge
 from validation.framework import (
     Case,
     Check,
@@ -73,3 +74,18 @@ def test_numbers_of_numpy_go_into_json(tmp_path):
     (record,) = json.loads((tmp_path / "out.json").read_text())
     assert record["passed"] is True
     assert record["difference"] == pytest.approx(0.1, rel=1e-5)
+
+
+def test_rows_of_one_name_stand_under_their_own_references(capsys):
+    checks = [
+        Check("power", 1.0, 1.0, "Jonkman (2009)", 0.1),
+        Check("thrust", 2.0, 2.0, "Jonkman (2009)", 0.1),
+        Check("power", 1.1, 1.0, "momentum theory", 0.2),
+    ]
+    case = Case("two", "rotor", "Two references", lambda: checks, 1)
+    assert judge([case], None, None) == 0
+    told = capsys.readouterr().out
+    first, second = told.index("Reference: Jonkman (2009)"), told.index("Reference: momentum")
+    assert told.index("rotor: Two references (two") < first < told.index("thrust") < second
+    assert told.count("Reference:") == 2
+    assert told[first:second].count("power") == told[second:].count("power") == 1

@@ -181,6 +181,14 @@ def row(check: Check) -> tuple[str, str, str, str, str, str]:
 HEADINGS = ("quantity", "reference", "galerna", "difference", "tolerance", "verdict")
 
 
+def by_source(checks: Iterable[Check]) -> dict[str, list[Check]]:
+    """Checks by the source of their reference, in the order in which those come first."""
+    groups: dict[str, list[Check]] = {}
+    for check in checks:
+        groups.setdefault(check.source, []).append(check)
+    return groups
+
+
 def page(outcomes: Sequence[Outcome]) -> str:
     """The validation page of the documentation, in Markdown."""
     judged = [c.passed for o in outcomes for c in o.checks if c.passed is not None]
@@ -201,12 +209,11 @@ def page(outcomes: Sequence[Outcome]) -> str:
             lines += ["", f"Left out: {outcome.left_out}"]
         if outcome.error:
             lines += ["", "The case stopped with an error:", "", "```", outcome.error, "```"]
-        for source in dict.fromkeys(check.source for check in outcome.checks):
+        for source, checks in by_source(outcome.checks).items():
             lines += ["", f"Reference: {source}", "", "| " + " | ".join(HEADINGS) + " |"]
             lines += ["|---|---:|---:|---:|---:|---|"]
             lines += [
                 "| " + " | ".join(cell.replace("|", "\\|") for cell in row(check)) + " |"
-                for check in outcome.checks
-                if check.source == source
+                for check in checks
             ]
     return "\n".join(lines) + "\n"

@@ -40,7 +40,10 @@ def judge(cases: Sequence[Any], json_file: Path | None, page: Path | None) -> in
         outcome = framework.run_case(case)
         outcomes.append(outcome)
         title = f"{case.group}: {case.title} ({case.name}, {outcome.seconds:.1f} s)"
-        tables.print_rows(title, framework.HEADINGS, map(framework.row, outcome.checks))
+        print(f"\n{title}")
+        for source, checks in framework.by_source(outcome.checks).items():
+            rows = map(framework.row, checks)
+            tables.print_rows(f"Reference: {source}", framework.HEADINGS, rows)
         if outcome.left_out:
             print(f"left out: {outcome.left_out}")
         if outcome.error:
