@@ -87,6 +87,13 @@ def test_a_machine_s_channels_are_listed_with_its_stations() -> None:
     assert set(ALIASES.values()) <= set(theirs)
 
 
+def test_the_wind_is_not_made_for_a_list() -> None:
+    absent = {"kind": "file", "path": "nowhere.bts"}
+    case = {**MACHINE, "inflow": {"turbulence": absent}}
+    channels, _ = channels_of(load(case))
+    assert "wind_speed" in {channel.name for channel in channels}
+
+
 def test_a_rigid_machine_has_no_sections_but_root_and_tower_loads() -> None:
     channels, _ = channels_of(load({**MACHINE, "structure": "rigid"}))
     names = {channel.name for channel in channels}
