@@ -262,3 +262,11 @@ def test_any_text_is_read_or_refused(text):
         parse_document(text, "any")
     except InputError:
         return
+
+
+def test_a_misspelt_word_for_the_structure_is_told():
+    with pytest.raises(InputError, match=r"'flexible', 'rigid' or a block, found 'flexable'"):
+        load({
+            "galerna": 1, "turbine": "nrel5mw", "duration_s": 1, "structure": "flexable",
+            "inflow": {"wind_speed_m_s": 8}, "control": "baseline",
+        })  # fmt: skip

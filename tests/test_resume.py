@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 from dataclasses import replace
+from textwrap import dedent
 
 import numpy as np
 import pytest
@@ -16,6 +17,7 @@ import pytest
 import galerna
 from galerna import ConvergenceError, InputError, checkpoints
 from galerna.case import load
+from galerna.errors import GalernaError
 from galerna.machine import build_machine
 from galerna.results import open_result
 from galerna.running import resumed_machine, simulate
@@ -153,6 +155,31 @@ def test_flow_pictures_go_on_after_those_that_are_there(tmp_path):
     for name in sorted(p.name for p in (tmp_path / "straight_flow").iterdir()):
         expected = (tmp_path / "straight_flow" / name).read_bytes()
         assert (tmp_path / "a_flow" / name).read_bytes() == expected
+
+
+def test_where_a_run_was_stopped_resuming_it_is_the_first_advice(tmp_path):
+    stopped(RIGID, tmp_path / "a.nc", 0.5)
+    with pytest.raises(InputError, match=r"(?s)stands here already.*galerna resume .*--overwrite"):
+        galerna.run(RIGID, tmp_path / "a.nc")
+
+
+def test_what_cannot_be_resumed_is_not_offered(tmp_path):
+    """A controller without a state; and a run that has recorded nothing."""
+    own = """
+        class Own:
+            def __init__(self, turbine):
+                pass
+
+            def demands(self, measured):
+                raise RuntimeError("no")
+    """
+    (tmp_path / "own.py").write_text(dedent(own))
+    case = {**CONTROLLED, "control": {"model": "python", "object": f"{tmp_path}/own.py:Own"}}
+    with pytest.raises(GalernaError) as caught:
+        galerna.run(case, tmp_path / "a.nc")
+    first, second = caught.value.__notes__
+    assert first == "nothing was recorded yet"
+    assert "cannot be resumed" in second
 
 
 class TestStateAtAStop:

@@ -24,16 +24,12 @@ from galerna.case import LoadedCase, parse
 from galerna.contract import Array
 from galerna.errors import InputError
 from galerna.machine import Machine
+from galerna.results.dataset import checkpoint_of
 
 FORMAT = 1
 WIND_TIMES = 200  #: at which the wind is compared
 START_AGAIN = "start again with galerna run"
 STATE = "state/"
-
-
-def checkpoint_of(result: Path) -> Path:
-    """The checkpoint that stands beside a result."""
-    return result.with_name(result.name + ".checkpoint")
 
 
 @dataclass(frozen=True)

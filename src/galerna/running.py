@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
@@ -176,10 +176,20 @@ class _Run:
             self.checkpoints.save()
         with suppress(InputError):  # a full disk: the log holds the records
             self.result.finish(f"stopped at {self.machine.simulation.time:.6g} s: {reason}")
-        path = self.result.path
-        error.add_note(f"the records so far are in {path}")
-        if self.checkpoints.path.exists():
-            error.add_note(f"galerna resume {path} goes on from its last checkpoint")
+        for note in self._what_is_left():
+            error.add_note(note)
+
+    def _what_is_left(self) -> Iterator[str]:
+        """What a stopped run leaves, a line each."""
+        path, commander = self.result.path, self.machine.simulation.commander
+        if not self.recorder.records:
+            yield "nothing was recorded yet"
+        else:
+            yield f"the records so far are in {path}"
+        if obstacle := getattr(commander, "resumable", ""):
+            yield f"the run cannot be resumed: {obstacle}"
+        elif self.recorder.steps and self.checkpoints.path.exists():
+            yield f"galerna resume {path} goes on from its last checkpoint"
 
 
 def _require_no_flow(case: Case) -> None:

@@ -12,10 +12,11 @@ from typing import Protocol
 
 import numpy as np
 
-from galerna.checkpoints import Origin, checkpoint_of, remove, wind_samples, write
+from galerna.checkpoints import Origin, remove, wind_samples, write
 from galerna.contract import Array
 from galerna.errors import InputError
 from galerna.machine import Machine
+from galerna.results.dataset import checkpoint_of
 from galerna.simulation import Callback, Simulation
 
 LARGEST_SHARE = 0.02  #: of a run's time that goes into checkpoints

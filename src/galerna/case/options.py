@@ -23,6 +23,7 @@ from pydantic import (
 from galerna.aero.bem.options import BemOptions
 from galerna.aero.vortex.options import VortexLatticeOptions
 from galerna.control.options import BaselineOptions, Control
+from galerna.errors import did_you_mean
 from galerna.inflow.options import InflowOptions
 from galerna.structure.options import StructureOptions
 from galerna.units import AIR_DENSITY
@@ -113,7 +114,12 @@ Aerodynamics = Annotated[
 def _structure(value: Any) -> Any:
     """``flexible`` and ``rigid`` stand for a whole block."""
     whole = {"flexible": StructureOptions(), "rigid": StructureOptions.rigid()}
-    return whole.get(value, value) if isinstance(value, str) else value
+    if not isinstance(value, str):
+        return value
+    if value not in whole:
+        hint = did_you_mean(value, whole)
+        raise ValueError(f"expected 'flexible', 'rigid' or a block, found {value!r}; {hint}")
+    return whole[value]
 
 
 def _control(value: Any) -> Any:

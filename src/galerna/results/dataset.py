@@ -22,6 +22,11 @@ def log_of(path: Path) -> Path:
     return path.with_name(path.name + ".log")
 
 
+def checkpoint_of(path: Path) -> Path:
+    """The checkpoint that stands beside a result file from which its run can go on."""
+    return path.with_name(path.name + ".checkpoint")
+
+
 def open_result(path: str | Path) -> xarray.Dataset:
     """A result as a labelled dataset, finished or half-written; attribute ``status`` tells.
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from galerna.contract import Array
 from galerna.errors import InputError
-from galerna.results.dataset import dataset_of, log_of
+from galerna.results.dataset import checkpoint_of, dataset_of, log_of
 from galerna.results.earlier import EarlierRecords
 from galerna.results.log import Layout, Log, read_log
 
@@ -74,6 +74,8 @@ def check_free(path: Path, overwrite: bool) -> None:
         if existing.exists() and not overwrite:
             kind = "a result" if existing == path else "the half-written result of a stopped run"
             hint = "name another file with --output, or replace it with --overwrite"
+            if checkpoint_of(path).exists():
+                hint = f"galerna resume {path} goes on with it; or {hint}"
             raise InputError(str(existing), f"{kind} stands here already", hint)
 
 
