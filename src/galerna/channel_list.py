@@ -36,12 +36,15 @@ def channels_of(case: LoadedCase) -> tuple[tuple[Channel, ...], Mapping[str, Arr
     commander: Commander | None = None
     if settings.moves:
         from galerna.coupling.build import control_loop, moving_machine
+        from galerna.coupling.controllers import controller
 
         with case.blame("structure"):
             structure = machine = moving_machine(case, turbine, operation, stations)
-        if settings.control is not None:
+        commanding = controller(case, turbine)
+        if commanding is not None:
             with case.blame("control"):
-                commander = control_loop(case, turbine, machine, wind.field.hub_velocity)
+                hub_wind = wind.field.hub_velocity
+                commander = control_loop(case, turbine, machine, hub_wind, commanding)
                 commander.close()
     with case.blame("time_step_s"):
         simulation = Simulation(

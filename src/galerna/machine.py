@@ -121,6 +121,7 @@ def build_machine(case: LoadedCase, controller: Controller | None = None) -> Mac
     settings = case.case
     with case.blame("turbine"):
         turbine = load_turbine(case)
+    commanding = _controller(case, turbine, controller)  # its files are looked for at once
     wind = build_wind(case, turbine)
     trim = _trim(case, turbine, wind)
     with case.blame("operation"):
@@ -136,10 +137,10 @@ def build_machine(case: LoadedCase, controller: Controller | None = None) -> Mac
         with case.blame("structure"):
             structure = moving_machine(case, turbine, operation, stations)
             torque = trim.start(structure, operation)
-        if settings.control is not None:
+        if commanding is not None:
             with case.blame("control"):
                 hub_wind = wind.field.hub_velocity
-                commander = control_loop(case, turbine, structure, hub_wind, controller)
+                commander = control_loop(case, turbine, structure, hub_wind, commanding)
                 commander.torque = PowerTrain.of(turbine.drivetrain).generator_torque(torque)
     else:
         with case.blame("operation"):
@@ -221,6 +222,17 @@ def _vortex_lattice(
         options=options,
         wake_inflow=everywhere if options.wake_turbulence else everywhere.without_turbulence(),
     )
+
+
+def _controller(
+    case: LoadedCase, turbine: Turbine, from_outside: Controller | None
+) -> Controller | None:
+    """What commands the machine of a case, if anything does."""
+    if case.case.control is None:
+        return None
+    from galerna.coupling.controllers import controller
+
+    return controller(case, turbine, from_outside)
 
 
 def _trim(case: LoadedCase, turbine: Turbine, wind: BuiltInflow) -> Trim | None:

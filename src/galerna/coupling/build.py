@@ -11,7 +11,7 @@ from galerna.control.drivetrain import PowerTrain
 from galerna.control.interface import Controller
 from galerna.coupling.base import base_path
 from galerna.coupling.control_loop import ControlLoop
-from galerna.coupling.controllers import controller, held_inertia, pitch_actuator, sample_time
+from galerna.coupling.controllers import held_inertia, pitch_actuator, sample_time
 from galerna.coupling.flexible import FlexibleMachine
 from galerna.coupling.paths import SignalPath, StepPath
 from galerna.coupling.sensors import Gauges
@@ -100,15 +100,15 @@ def control_loop(
     turbine: Turbine,
     machine: FlexibleMachine,
     hub_wind: Callable[[float], Array],
-    from_outside: Controller | None = None,
+    controller: Controller,
 ) -> ControlLoop:
-    """The controller of a case, or the one from outside, with its actuators."""
+    """The controller of a case with its actuators."""
     options = case.case.control
     assert options is not None
     structure = case.case.structure or StructureOptions.rigid()
     loop = ControlLoop(
         machine,
-        controller(case, turbine, from_outside),
+        controller,
         PowerTrain.of(turbine.drivetrain),
         pitch_actuator(options, turbine),
         hub_wind,

@@ -32,10 +32,20 @@ INDIVIDUAL_PITCH_TIME = 5.0  #: s, in which individual pitch control takes the m
 
 def controller(
     case: LoadedCase, turbine: Turbine, from_outside: Controller | None = None
+) -> Controller | None:
+    """The controller that a case describes, or for an external one that which is given.
+
+    None for a case without control. Raises InputError for a file that is not there.
+    """
+    if case.case.control is None:
+        return None
+    with case.blame("control"):
+        return _controller(case, case.case.control, turbine, from_outside)
+
+
+def _controller(
+    case: LoadedCase, options: Control, turbine: Turbine, from_outside: Controller | None
 ) -> Controller:
-    """The controller that a case describes, or for an external one that which is given."""
-    options = case.case.control
-    assert options is not None
     if isinstance(options, DisconOptions):
         return DisconController(options, turbine, case.folder, sample_time(case))
     if isinstance(options, PythonOptions):
