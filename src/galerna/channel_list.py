@@ -11,10 +11,9 @@ from galerna.errors import InputError
 from galerna.inflow.build import build
 from galerna.inflow.options import InflowOptions
 from galerna.inflow.sizing import RotorExtent
-from galerna.kinematics import PrescribedMotion, PrescribedOperation
-from galerna.machine import HubWindProbe, load_models, load_turbine
+from galerna.kinematics import PrescribedOperation
+from galerna.machine import assembled, controller_of, let_go, load_turbine
 from galerna.signals import Signal
-from galerna.simulation import Commander, Simulation, Structure
 
 WIND_SPEED = 10.0  #: m/s: any will do
 
@@ -29,31 +28,8 @@ def channels_of(case: LoadedCase) -> tuple[tuple[Channel, ...], Mapping[str, Arr
     still = Signal.constant(0.0)
     speed = Signal.constant(turbine.control.rated_rotor_speed)
     operation = PrescribedOperation(speed, (still,) * turbine.number_of_blades, still)
-    with case.blame("aerodynamics"):
-        models = load_models(case, turbine, wind, operation)
-    stations = [model.stations for model in models.values()]
-    structure: Structure = PrescribedMotion(turbine, operation, stations)
-    commander: Commander | None = None
-    if settings.moves:
-        from galerna.coupling.build import control_loop, moving_machine
-        from galerna.coupling.controllers import controller
-
-        with case.blame("structure"):
-            structure = machine = moving_machine(case, turbine, operation, stations)
-        commanding = controller(case, turbine)
-        if commanding is not None:
-            with case.blame("control"):
-                hub_wind = wind.field.hub_velocity
-                commander = control_loop(case, turbine, machine, hub_wind, commanding)
-                commander.close()
-    with case.blame("time_step_s"):
-        simulation = Simulation(
-            structure,
-            models,
-            settings.time_step_s,
-            commander=commander,
-            probes={"wind": HubWindProbe(wind.field)},
-        )
+    simulation = assembled(case, turbine, wind, operation, controller_of(case, turbine))
+    let_go(simulation)
     return simulation.channels, simulation.coordinates
 
 

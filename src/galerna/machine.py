@@ -103,9 +103,7 @@ class Machine:
 
     def close(self) -> None:
         """Let go of what outlives a run otherwise: a controller's process."""
-        close = getattr(self.simulation.commander, "close", None)
-        if close is not None:
-            close()
+        let_go(self.simulation)
 
     def doubts(self) -> Iterator[str]:
         """What can be simulated but is hardly meant, a sentence each."""
@@ -118,43 +116,67 @@ def build_machine(case: LoadedCase, controller: Controller | None = None) -> Mac
     A ``controller`` made in Python commands a case with external control. Raises InputError with
     the line of the key that cannot be satisfied.
     """
-    settings = case.case
     with case.blame("turbine"):
         turbine = load_turbine(case)
-    commanding = _controller(case, turbine, controller)  # its files are looked for at once
+    commanding = controller_of(case, turbine, controller)  # its files are looked for at once
     wind = build_wind(case, turbine)
     trim = _trim(case, turbine, wind)
     with case.blame("operation"):
         operation = _operation(case, turbine, wind.mean_speed, trim)
+    simulation = assembled(case, turbine, wind, operation, commanding, trim)
+    channels = _chosen_channels(case, simulation)
+    return Machine(case, turbine, wind, operation, simulation, channels)
+
+
+def assembled(
+    case: LoadedCase,
+    turbine: Turbine,
+    wind: BuiltInflow,
+    operation: PrescribedOperation,
+    commanding: Controller | None,
+    trim: Trim | None = None,
+) -> Simulation:
+    """The simulation of a case: loads, structure and controller in its time loop.
+
+    A machine that moves starts as ``trim`` says; without it, it stands as it was described.
+    """
+    settings = case.case
     with case.blame("aerodynamics"):
         models = load_models(case, turbine, wind, operation)
     stations = [model.stations for model in models.values()]
     structure: Structure
     commander: Commander | None = None
-    if trim is not None:
+    if settings.moves:
         from galerna.coupling.build import control_loop, moving_machine
 
         with case.blame("structure"):
             structure = moving_machine(case, turbine, operation, stations)
-            torque = trim.start(structure, operation)
+            torque = None if trim is None else trim.start(structure, operation)
         if commanding is not None:
             with case.blame("control"):
                 hub_wind = wind.field.hub_velocity
                 commander = control_loop(case, turbine, structure, hub_wind, commanding)
-                commander.torque = PowerTrain.of(turbine.drivetrain).generator_torque(torque)
+                if torque is not None:
+                    train = PowerTrain.of(turbine.drivetrain)
+                    commander.torque = train.generator_torque(torque)
     else:
         with case.blame("operation"):
             structure = PrescribedMotion(turbine, operation, stations)
     with case.blame("time_step_s"):
-        simulation = Simulation(
+        return Simulation(
             structure,
             models,
             settings.time_step_s,
             commander=commander,
             probes={"wind": HubWindProbe(wind.field)},
         )
-    channels = _chosen_channels(case, simulation)
-    return Machine(case, turbine, wind, operation, simulation, channels)
+
+
+def let_go(simulation: Simulation) -> None:
+    """Close a controller that has something to close, such as a process."""
+    close = getattr(simulation.commander, "close", None)
+    if close is not None:
+        close()
 
 
 def load_turbine(case: LoadedCase) -> Turbine:
@@ -224,8 +246,8 @@ def _vortex_lattice(
     )
 
 
-def _controller(
-    case: LoadedCase, turbine: Turbine, from_outside: Controller | None
+def controller_of(
+    case: LoadedCase, turbine: Turbine, from_outside: Controller | None = None
 ) -> Controller | None:
     """What commands the machine of a case, if anything does."""
     if case.case.control is None:
