@@ -13,30 +13,16 @@ from galerna.aero.vortex.cores import VortexCore
 from galerna.aero.vortex.far_wake import FarWake
 from galerna.aero.vortex.field import InducedField
 from galerna.aero.vortex.flow import control_points
-from galerna.aero.vortex.rotor_axis import RotorAxis
 from galerna.aero.vortex.surface import Surface
 from galerna.aero.vortex.unsteady import UnsteadyLattice, UnsteadyOptions
 from galerna.aero.vortex.wake import Wake, helical_wake
 from galerna.aero.vortex.wings import trapezoidal_wing
 from galerna.contract import Array
 
+from .two_blades import AXIS, rotor
+
 CORE = VortexCore(0.1)
-AXIS = RotorAxis(np.zeros(3), np.array([1.0, 0.0, 0.0]), 1.0)
 WIND = np.array([6.0, 0.0, 0.0])
-
-
-def rotor(azimuth: float, rows: int = 8, columns: int = 12) -> list[Surface]:
-    """Two blades of chord 2 m from 5 to 30 m, pitched by 6 degrees, that turn about x."""
-    along, radius = np.linspace(-0.5, 1.5, rows + 1), np.linspace(5.0, 30.0, columns + 1)
-    blade = np.zeros((rows + 1, columns + 1, 3))
-    blade[..., 0] = 0.1 * along[:, None]
-    blade[..., 1], blade[..., 2] = along[:, None], radius
-    surfaces = []
-    for turn in (azimuth, azimuth + np.pi):
-        c, s = np.cos(turn), np.sin(turn)
-        corners = blade @ np.array([[1.0, 0, 0], [0, c, -s], [0, s, c]]).T
-        surfaces.append(Surface.turning(corners, AXIS.speed * AXIS.direction))
-    return surfaces
 
 
 def laid_out(surfaces: list[Surface]) -> Wake:

@@ -7,13 +7,13 @@ import pytest
 
 from galerna.aero.vortex.ages import growing_ages
 from galerna.aero.vortex.cores import VortexCore
-from galerna.aero.vortex.rotor_axis import RotorAxis
-from galerna.aero.vortex.surface import Surface
 from galerna.aero.vortex.thinning import Integers, Thinning, summed_rows, turned
 from galerna.aero.vortex.unsteady import UnsteadyLattice, UnsteadyOptions
 from galerna.aero.vortex.wake import helical_wake, straight_wake
 from galerna.contract import Array
 from galerna.errors import InputError
+
+from .two_blades import AXIS, rotor
 
 GROWING = growing_ages(0.1, 6.0, near=1.0, growth=1.2, widest=0.5)
 ROWS = summed_rows(GROWING)
@@ -21,21 +21,6 @@ AGES = 0.1 * np.arange(ROWS[-1] + 1.0)
 STEP = np.radians(7.5)
 FEW = summed_rows(growing_ages(STEP, 10.0, near=1.0, growth=1.2, widest=4.0 * STEP))
 FREE = STEP * np.arange(FEW[-1] + 1.0)
-AXIS = RotorAxis(np.zeros(3), np.array([1.0, 0.0, 0.0]), 1.0)
-
-
-def rotor(azimuth: float) -> list[Surface]:
-    """Two blades of chord 2 m from 5 to 30 m, pitched by 6 degrees, that turn about x."""
-    along, radius = np.linspace(-0.5, 1.5, 3), np.linspace(5.0, 30.0, 9)
-    blade = np.zeros((3, 9, 3))
-    blade[..., 0] = 0.1 * along[:, None]
-    blade[..., 1], blade[..., 2] = along[:, None], radius
-    surfaces = []
-    for turn in (azimuth, azimuth + np.pi):
-        c, s = np.cos(turn), np.sin(turn)
-        corners = blade @ np.array([[1.0, 0, 0], [0, c, -s], [0, s, c]]).T
-        surfaces.append(Surface.turning(corners, AXIS.speed * AXIS.direction))
-    return surfaces
 
 
 class Steady:
@@ -53,8 +38,8 @@ def flow(rows: Integers | None = FEW, *, multirate: bool = False) -> UnsteadyLat
 
 def march(lattice: UnsteadyLattice, steps: range) -> UnsteadyLattice:
     for i in steps:
-        lattice.begin_step(i * STEP, STEP, rotor(i * STEP), AXIS)
-        lattice.end_step((i + 1) * STEP, rotor((i + 1) * STEP))
+        lattice.begin_step(i * STEP, STEP, rotor(i * STEP, 2, 8), AXIS)
+        lattice.end_step((i + 1) * STEP, rotor((i + 1) * STEP, 2, 8))
     return lattice
 
 
