@@ -13,6 +13,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from galerna.turbine.platform import Platform
+
 Array = NDArray[np.float64]
 
 
@@ -206,23 +208,6 @@ class Tower:
     drag_coefficient: Array
     structure: SectionProperties | None = None
     extra_masses: tuple[tuple[float, float], ...] = ()  #: (height m, mass kg)
-
-
-@dataclass(frozen=True, eq=False)
-class Platform:
-    """Floating platform as a rigid body about its reference point, global axes.
-
-    ``center_of_mass`` (3,) m from the origin; ``inertia`` (3,) kg m2 in roll, pitch and
-    yaw about the centre of mass.
-    """
-
-    reference_point: tuple[float, float, float]
-    mass: float
-    center_of_mass: tuple[float, float, float]
-    inertia: tuple[float, float, float]
-    displaced_volume: float = 0.0
-    water_depth: float = 0.0
-    draft: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,0 +1,1 @@
+"""Water on the platform: hydrostatics, radiation, waves, drag, moorings."""
