@@ -12,7 +12,7 @@ from galerna.inflow.build import build
 from galerna.inflow.options import InflowOptions
 from galerna.inflow.sizing import RotorExtent
 from galerna.kinematics import PrescribedOperation
-from galerna.machine import assembled, controller_of, let_go, load_turbine
+from galerna.machine import afloat_of, assembled, controller_of, let_go, load_turbine
 from galerna.signals import Signal
 
 WIND_SPEED = 10.0  #: m/s: any will do
@@ -28,7 +28,9 @@ def channels_of(case: LoadedCase) -> tuple[tuple[Channel, ...], Mapping[str, Arr
     still = Signal.constant(0.0)
     speed = Signal.constant(turbine.control.rated_rotor_speed)
     operation = PrescribedOperation(speed, (still,) * turbine.number_of_blades, still)
-    simulation = assembled(case, turbine, wind, operation, controller_of(case, turbine))
+    shortly = case.lasting(case.case.time_step_s) if case.case.sea is not None else case
+    afloat = afloat_of(shortly, turbine)
+    simulation = assembled(case, turbine, wind, operation, controller_of(case, turbine), afloat)
     let_go(simulation)
     return simulation.channels, simulation.coordinates
 

@@ -24,7 +24,7 @@ from galerna.inflow.build import BuiltInflow, build
 from galerna.inflow.sizing import RotorExtent
 from galerna.kinematics import PrescribedMotion, PrescribedOperation
 from galerna.signals import Signal
-from galerna.simulation import Callback, Commander, Simulation, Structure
+from galerna.simulation import Callback, Commander, Probe, Simulation, Structure
 from galerna.turbine.model import Turbine
 from galerna.units import DEG, RPM
 
@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from galerna.aero.vortex.model import VortexLattice
     from galerna.aero.vortex.options import VortexLatticeOptions
     from galerna.control.interface import Controller
+    from galerna.coupling.afloat import Afloat
     from galerna.coupling.trim import Trim
     from galerna.inflow.field import WindField
 
@@ -48,6 +49,7 @@ class Machine:
     operation: PrescribedOperation
     simulation: Simulation
     channels: tuple[Channel, ...]
+    afloat: Afloat | None = None
 
     def describe(self) -> Iterator[tuple[str, str]]:
         """What was built, in pairs of heading and text."""
@@ -119,13 +121,14 @@ def build_machine(case: LoadedCase, controller: Controller | None = None) -> Mac
     with case.blame("turbine"):
         turbine = load_turbine(case)
     commanding = controller_of(case, turbine, controller)  # its files are looked for at once
+    afloat = afloat_of(case, turbine)
     wind = build_wind(case, turbine)
-    trim = _trim(case, turbine, wind)
+    trim = _trim(case, turbine, wind, afloat)
     with case.blame("operation"):
         operation = _operation(case, turbine, wind.mean_speed, trim)
-    simulation = assembled(case, turbine, wind, operation, commanding, trim)
+    simulation = assembled(case, turbine, wind, operation, commanding, afloat, trim)
     channels = _chosen_channels(case, simulation)
-    return Machine(case, turbine, wind, operation, simulation, channels)
+    return Machine(case, turbine, wind, operation, simulation, channels, afloat)
 
 
 def assembled(
@@ -134,6 +137,7 @@ def assembled(
     wind: BuiltInflow,
     operation: PrescribedOperation,
     commanding: Controller | None,
+    afloat: Afloat | None = None,
     trim: Trim | None = None,
 ) -> Simulation:
     """The simulation of a case: loads, structure and controller in its time loop.
@@ -143,6 +147,8 @@ def assembled(
     settings = case.case
     with case.blame("aerodynamics"):
         models = load_models(case, turbine, wind, operation)
+    if afloat is not None:
+        models |= afloat.models
     stations = [model.stations for model in models.values()]
     structure: Structure
     commander: Commander | None = None
@@ -150,8 +156,8 @@ def assembled(
         from galerna.coupling.build import control_loop, moving_machine
 
         with case.blame("structure"):
-            structure = moving_machine(case, turbine, operation, stations)
-            torque = None if trim is None else trim.start(structure, operation)
+            structure = moving_machine(case, turbine, operation, stations, afloat)
+            torque = None if trim is None else trim.start(structure, operation, models)
         if commanding is not None:
             with case.blame("control"):
                 hub_wind = wind.field.hub_velocity
@@ -162,13 +168,12 @@ def assembled(
     else:
         with case.blame("operation"):
             structure = PrescribedMotion(turbine, operation, stations)
+    probes: dict[str, Probe] = {"wind": HubWindProbe(wind.field)}
+    if afloat is not None:
+        probes["waves"] = afloat.probe
     with case.blame("time_step_s"):
         return Simulation(
-            structure,
-            models,
-            settings.time_step_s,
-            commander=commander,
-            probes={"wind": HubWindProbe(wind.field)},
+            structure, models, settings.time_step_s, commander=commander, probes=probes
         )
 
 
@@ -257,13 +262,24 @@ def controller_of(
     return controller(case, turbine, from_outside)
 
 
-def _trim(case: LoadedCase, turbine: Turbine, wind: BuiltInflow) -> Trim | None:
+def afloat_of(case: LoadedCase, turbine: Turbine) -> Afloat | None:
+    """The water of a case that has a sea."""
+    if case.case.sea is None:
+        return None
+    from galerna.coupling.afloat import build_water
+
+    return build_water(case, turbine)
+
+
+def _trim(
+    case: LoadedCase, turbine: Turbine, wind: BuiltInflow, afloat: Afloat | None
+) -> Trim | None:
     """What a machine that moves starts from."""
     if not case.case.moves:
         return None
     from galerna.coupling.build import trim_of
 
-    return trim_of(case, turbine, wind.field)
+    return trim_of(case, turbine, wind.field, afloat)
 
 
 def _operation(

@@ -12,6 +12,7 @@ from galerna.coupling.energy import EnergyLedger, dissipated, increments
 from galerna.coupling.flexible import FlexibleMachine
 from galerna.machine import build_machine
 from galerna.structure import Scheme, TurbineOptions, with_initial_accelerations
+from galerna.structure.forces import Forces
 from galerna.turbine import load as load_turbine
 
 NREL = load_turbine("nrel5mw")
@@ -52,7 +53,7 @@ def account(rho_inf: float, dt: float) -> dict[str, float]:
     machine, states = falling(rho_inf, dt, 2.0)
     ledger = EnergyLedger(machine.system, machine.integrator.scheme)
     for state in states:
-        ledger.add(state, np.zeros((len(machine.system), 6)), np.zeros(3))
+        ledger.add(state, Forces.none(len(machine.system)), np.zeros(3))
     return ledger.values()
 
 

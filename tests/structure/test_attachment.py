@@ -7,6 +7,7 @@ import pytest
 
 from galerna.contract import Loads
 from galerna.structure.attachment import Attachment
+from galerna.structure.forces import Forces
 from galerna.structure.frames import exp_se3, exp_so3
 from galerna.structure.system import State
 
@@ -66,10 +67,10 @@ def test_loads_do_the_same_work_on_stations_and_frames() -> None:
     state = a_state()
     stations, n = attached(state), len(ENDS)
     loads = Loads(rng.normal(size=(n, 3)), rng.normal(size=(n, 3)))
-    motion, follower = stations.motion, np.zeros((4, 6))
-    stations.add_loads(loads, follower)
+    motion, forces = stations.motion, Forces.none(4)
+    stations.add_loads(loads, forces)
     power = (loads.force * motion.velocity).sum() + (loads.moment * motion.angular_velocity).sum()
-    assert (follower * state.velocity).sum() == pytest.approx(power, rel=1e-12)
+    assert (forces.follower * state.velocity).sum() == pytest.approx(power, rel=1e-12)
 
 
 def test_a_rigid_turn_has_its_centripetal_acceleration() -> None:

@@ -24,6 +24,8 @@ from galerna.aero.bem.options import BemOptions
 from galerna.aero.vortex.options import VortexLatticeOptions
 from galerna.control.options import BaselineOptions, Control
 from galerna.errors import did_you_mean
+from galerna.hydro.platform_options import PlatformOptions
+from galerna.hydro.sea_options import SeaOptions
 from galerna.inflow.options import InflowOptions
 from galerna.structure.options import StructureOptions
 from galerna.units import AIR_DENSITY
@@ -120,6 +122,11 @@ def _structure(value: Any) -> Any:
         hint = did_you_mean(value, whole)
         raise ValueError(f"expected 'flexible', 'rigid' or a block, found {value!r}; {hint}")
     return whole[value]
+
+
+def _sea(value: Any) -> Any:
+    """``still`` stands for a sea without waves and current."""
+    return SeaOptions() if value == "still" else value
 
 
 def _control(value: Any) -> Any:
@@ -245,6 +252,15 @@ class Case(Block):
     base_motion: BaseMotion | None = Field(
         None, description="Prescribed motion of the tower's foot or of the platform."
     )
+    sea: Annotated[SeaOptions | None, BeforeValidator(_sea)] = Field(
+        None,
+        description="The water a platform floats in, with waves and current; `still` for none of "
+        "these. Left out, a platform stands still, or moves as `base_motion` says.",
+        json_schema_extra=_or_words("still"),
+    )
+    platform: PlatformOptions | None = Field(
+        None, description="How the platform floats in the sea, and how it starts."
+    )
     control: Annotated[Control | None, BeforeValidator(_control)] = Field(
         None,
         description="The controller: `baseline`, `discon`, `python`, `external`, or a block. "
@@ -262,12 +278,15 @@ class Case(Block):
     def _is_run(self) -> Self:
         if self.operation is None and self.control is None:
             raise ValueError("give control, such as `control: baseline`, or operation")
+        if self.platform is not None and self.sea is None:
+            raise ValueError("platform floats in nothing: give a sea, such as `sea: still`")
         return self
 
     @property
     def moves(self) -> bool:
         """Whether loads move the machine; otherwise all of its motion is prescribed."""
-        return not (self.structure is None and self.control is None and self.base_motion is None)
+        given = (self.structure, self.control, self.base_motion, self.sea)
+        return any(block is not None for block in given)
 
     @property
     def start(self) -> Operation:

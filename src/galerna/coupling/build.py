@@ -9,6 +9,7 @@ from galerna.case import LoadedCase
 from galerna.contract import Array, Stations
 from galerna.control.drivetrain import PowerTrain
 from galerna.control.interface import Controller
+from galerna.coupling.afloat import Afloat
 from galerna.coupling.base import base_path
 from galerna.coupling.control_loop import ControlLoop
 from galerna.coupling.controllers import held_inertia, pitch_actuator, sample_time
@@ -20,17 +21,23 @@ from galerna.errors import InputError
 from galerna.inflow.field import WindField
 from galerna.kinematics import PrescribedOperation
 from galerna.structure import Scheme, TurbineOptions
+from galerna.structure.joints import ALL
 from galerna.structure.options import StructureOptions
 from galerna.turbine.model import Turbine
 
 
 def turbine_options(
-    case: LoadedCase, turbine: Turbine, operation: PrescribedOperation
+    case: LoadedCase,
+    turbine: Turbine,
+    operation: PrescribedOperation,
+    afloat: Afloat | None = None,
 ) -> TurbineOptions:
     """What of a case's machine is flexible, where it stands at first, and how it is moved.
 
     Raises InputError for a part whose sectional data the turbine does not give.
     """
+    floating = None if afloat is None else afloat.floating
+    locked = () if floating is None else floating.water.locked
     settings = case.case
     options = settings.structure or StructureOptions.rigid()
     _require_sections(turbine, options)
@@ -52,7 +59,13 @@ def turbine_options(
             for angle in pitch
         ),
         yaw_motion=StepPath(float(yaw.value[0])) if controlled else SignalPath(yaw),
-        base_motion=base_path(turbine, settings.base_motion),
+        base_motion=base_path(turbine, settings.base_motion)
+        if floating is None
+        else floating.pose
+        if locked
+        else None,
+        base_locked=locked or ALL,
+        platform="rigid" if settings.platform is None else settings.platform.model,
         gravity=(0.0, 0.0, -options.gravity_m_s2),
     )
 
@@ -73,6 +86,7 @@ def moving_machine(
     turbine: Turbine,
     operation: PrescribedOperation,
     stations: Sequence[Sequence[Stations]],
+    afloat: Afloat | None = None,
 ) -> FlexibleMachine:
     """The structure of a case, as it was described; ``Trim.start`` sets it in motion."""
     options = case.case.structure or StructureOptions.rigid()
@@ -82,7 +96,7 @@ def moving_machine(
     return FlexibleMachine(
         turbine,
         stations,
-        turbine_options(case, turbine, operation),
+        turbine_options(case, turbine, operation, afloat),
         scheme=scheme,
         gauges=gauges,
         energy=outputs.energy,
@@ -90,9 +104,10 @@ def moving_machine(
     )
 
 
-def trim_of(case: LoadedCase, turbine: Turbine, wind: WindField) -> Trim:
+def trim_of(case: LoadedCase, turbine: Turbine, wind: WindField, afloat: Afloat | None) -> Trim:
     """What a case starts from."""
-    return Trim(case, turbine, wind, partial(turbine_options, case, turbine))
+    describe = partial(turbine_options, case, turbine, afloat=afloat)
+    return Trim(case, turbine, wind, describe, None if afloat is None else afloat.floating)
 
 
 def control_loop(

@@ -45,6 +45,12 @@ def acceleration(name: str, text: str, openfast: str, dims: tuple[str, ...] = ()
     return Channel(name, "m/s2", text, dims, openfast, "m/s^2")
 
 
+def spin(name: str, text: str, openfast: str, order: int = 1) -> Channel:
+    """An angular velocity rad/s, or of ``order`` 2 an acceleration rad/s2, in OpenFAST by deg."""
+    per = {1: ("rad/s", "deg/s"), 2: ("rad/s2", "deg/s^2")}[order]
+    return Channel(name, per[0], text, (), openfast, per[1], 1.0 / DEG)
+
+
 BLADE_ROOT = (
     force("blade_root_out_of_plane_shear", "out-of-plane blade-root force (x, coned axes)",
           "RootFxc{blade}", PER_BLADE),
@@ -205,4 +211,18 @@ BASE = (
     angle("platform_roll", "rotation of the base about x, the last of the turns", "PtfmRoll"),
     angle("platform_pitch", "rotation of the base about y", "PtfmPitch"),
     angle("platform_yaw", "rotation of the base about z, the first of the turns", "PtfmYaw"),
+)
+BASE_RATES = (
+    Channel("platform_velocity_x", "m/s", "velocity of the base along x", (), "PtfmTVxi", "m/s"),
+    Channel("platform_velocity_y", "m/s", "velocity of the base along y", (), "PtfmTVyi", "m/s"),
+    Channel("platform_velocity_z", "m/s", "velocity of the base along z", (), "PtfmTVzi", "m/s"),
+    spin("platform_spin_x", "angular velocity of the base about x", "PtfmRVxi"),
+    spin("platform_spin_y", "angular velocity of the base about y", "PtfmRVyi"),
+    spin("platform_spin_z", "angular velocity of the base about z", "PtfmRVzi"),
+    acceleration("platform_acceleration_x", "acceleration of the base along x", "PtfmTAxi"),
+    acceleration("platform_acceleration_y", "acceleration of the base along y", "PtfmTAyi"),
+    acceleration("platform_acceleration_z", "acceleration of the base along z", "PtfmTAzi"),
+    spin("platform_spin_rate_x", "angular acceleration of the base about x", "PtfmRAxi", 2),
+    spin("platform_spin_rate_y", "angular acceleration of the base about y", "PtfmRAyi", 2),
+    spin("platform_spin_rate_z", "angular acceleration of the base about z", "PtfmRAzi", 2),
 )

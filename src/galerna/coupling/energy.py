@@ -24,7 +24,7 @@ import numpy as np
 from galerna.contract import Array, Channel
 from galerna.structure.frames import log_se3
 from galerna.structure.integrators import Scheme
-from galerna.structure.system import State, System
+from galerna.structure.system import Forces, State, System
 
 GIVEN = ("electrical", "losses", "brake")
 DRIVES = {
@@ -36,6 +36,7 @@ DRIVES = {
 STORED = ("kinetic", "elastic", "potential")
 TEXTS = {
     "wind": "work of the air on the machine",
+    "water": "work of the water on the machine, of buoyancy and moorings too",
     "electrical": "energy into the grid",
     "losses": "energy lost in gearbox and generator",
     "brake": "energy taken by the brake",
@@ -52,18 +53,19 @@ TEXTS = {
 }
 CHANNELS = tuple(Channel(f"energy_{name}", "J", text) for name, text in TEXTS.items())
 _NAMES = tuple(name for name in TEXTS if name not in ("defect", *STORED))
-_BROUGHT = ("wind", *DRIVES.values())
+_BROUGHT = ("wind", "water", *DRIVES.values())
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _End:
     """One end of a step: the state, loads in body axes, power given away, and the pairs.
 
-    ``places`` and ``wrenches`` (k,6) belong to the pairs that are driven.
+    ``loads`` (2,n,6) are those of the air and of the water; ``places`` and ``wrenches`` (k,6)
+    belong to the pairs that are driven.
     """
 
     state: State
-    follower: Array
+    loads: Array
     given: Array
     strain: Array
     damping: Array
@@ -85,12 +87,14 @@ class EnergyLedger:
         self._sums, self._opening = np.zeros(len(_NAMES)), np.zeros(3)
         self._last: _End | None = None
 
-    def add(self, state: State, follower: Array, given: Array) -> None:
-        """A step has ended at ``state`` under the loads ``follower`` (n,6) in body axes.
+    def add(self, state: State, forces: Forces, given: Array) -> None:
+        """A step has ended at ``state`` under the air's loads, follower, and the water's, dead.
 
         ``given`` (3,) W goes into the grid, gearbox and generator, and the brake.
         """
-        end, last = self._end(state, follower, given), self._last
+        dead = forces.dead.reshape(-1, 2, 3) @ state.rotation
+        loads = np.stack([forces.follower, dead.reshape(-1, 6)])
+        end, last = self._end(state, loads, given), self._last
         if last is None:
             self._opening = np.array(self._system.energies(state))
         else:
@@ -112,20 +116,20 @@ class EnergyLedger:
     def state(self) -> dict[str, np.ndarray]:
         """What the next step needs beside the machine's state."""
         last = self._last
-        follower = np.zeros((0, 6)) if last is None else last.follower.copy()
+        loads = np.zeros((2, 0, 6)) if last is None else last.loads.copy()
         given = np.zeros(3) if last is None else last.given
         sums = np.concatenate([self._sums, self._opening, given])
-        return {"energy_sums": sums, "energy_loads": follower}
+        return {"energy_sums": sums, "energy_loads": loads}
 
     def restore(self, saved: Mapping[str, np.ndarray], state: State) -> None:
         """Take ``saved`` back, with the machine in ``state``."""
         self._sums, self._opening, given = np.split(
             saved["energy_sums"].copy(), [len(_NAMES), len(_NAMES) + 3]
         )
-        follower = saved["energy_loads"]
-        self._last = self._end(state, follower, given) if len(follower) else None
+        loads = saved["energy_loads"]
+        self._last = self._end(state, loads, given) if loads.size else None
 
-    def _end(self, state: State, follower: Array, given: Array) -> _End:
+    def _end(self, state: State, loads: Array, given: Array) -> _End:
         pairs, system = self._system.pair_answer(state), self._system
         damping = np.einsum("mij,mj->mi", system.pairs.damping, pairs.rate)
         places = [
@@ -136,16 +140,15 @@ class EnergyLedger:
             for pair, _ in self._drives
         ]
         wrenches = pairs.wrench[np.array([pair for pair, _ in self._drives], dtype=np.int64)]
-        return _End(
-            state, follower.copy(), np.array(given), pairs.motion, damping, places, wrenches
-        )
+        return _End(state, loads.copy(), np.array(given), pairs.motion, damping, places, wrenches)
 
     def _works(self, first: _End, second: _End) -> Array:
         """The work of each of the names in one step."""
         works = np.zeros(len(_NAMES))
         dt = second.state.time - first.state.time
         increment = increments(self._scheme, first.state, second.state, dt)
-        works[_NAMES.index("wind")] = 0.5 * np.sum(increment * (first.follower + second.follower))
+        for kind, both in zip(("wind", "water"), first.loads + second.loads, strict=True):
+            works[_NAMES.index(kind)] = 0.5 * np.sum(increment * both)
         start = _NAMES.index(GIVEN[0])
         works[start : start + 3] = 0.5 * dt * (first.given + second.given)
         damping = 0.5 * (first.damping + second.damping)

@@ -18,10 +18,13 @@ from galerna.aero.bem.steady import AT_ONCE, steady_options
 from galerna.aero.body_drag import BodyDrag
 from galerna.contract import Array, Inflow, LoadModel
 from galerna.coupling.flexible import FlexibleMachine
+from galerna.coupling.floating import Pose
 from galerna.coupling.paths import StepPath
 from galerna.errors import ConvergenceError
 from galerna.structure import TurbineOptions
+from galerna.structure.foundation import held_at
 from galerna.structure.frames import exp_so3
+from galerna.structure.joints import ALL
 from galerna.structure.pairs import Integers
 from galerna.structure.statics import static_equilibrium
 from galerna.structure.system import Forces, State, with_spin
@@ -149,6 +152,15 @@ class SteadyMachine:
         self._known[turned] = state, np.array(pitch)
         return state
 
+    def carry(self, pose: Pose, to: Pose) -> None:
+        """Take the base of this machine from the pose that holds it to another one."""
+        turned = to.rotation @ pose.rotation.T
+        everything = np.arange(1, len(self.system))
+        for state, _ in self._known.values():
+            turn(state, everything, pose.position, turned)
+            state.position[everything] += to.position - pose.position
+        pose.take(to)
+
     def forces(self) -> Forces:
         """The loads on the machine in its last shape, on its frames."""
         return self.machine.forces(
@@ -225,11 +237,11 @@ class Relaxed:
 
 
 def _held(turbine: Turbine, options: TurbineOptions) -> TurbineOptions:
-    """The options with a platform held where it was described, unless it is moved."""
-    if turbine.platform is None or options.base_motion is not None:
+    """The options with a platform held: where it is moved to, or where it was described."""
+    if turbine.platform is None:
         return options
-    place = np.array(turbine.platform.reference_point)
-    return replace(options, base_motion=lambda time: (place, np.eye(3)))
+    place = held_at(np.array(turbine.platform.reference_point))
+    return replace(options, base_motion=options.base_motion or place, base_locked=ALL)
 
 
 def rotor_nodes(machine: FlexibleMachine) -> Integers:

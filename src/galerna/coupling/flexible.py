@@ -36,6 +36,7 @@ TOLERANCE = Tolerance(
     relative=1e-4, displacement=1e-6, rotation=1e-6, velocity=1e-4, angular_velocity=1e-4,
     iterations=25,
 )  # fmt: skip
+FLOATING = ("platform", "spar")  #: parts on which loads may have tangents
 UNBALANCED = 1.5e-6  #: of the weight: force N, and N m, which a coupled step leaves over
 
 
@@ -83,6 +84,15 @@ def _riding(
     """A load model's stations on one part, and their rows in its loads."""
     chosen, rows = rows_of(group, part)
     return (attach(turbine, system, chosen), rows) if chosen else None
+
+
+def _afloat(riders: Sequence[Attachment], stations: Sequence[Sequence[Stations]]) -> Integers:
+    """The frames (k,) on which loads of the water act, which are stiff."""
+    frames = [np.zeros(0, dtype=np.int64)]
+    for riding, group in zip(riders, stations, strict=True):
+        for part in FLOATING:
+            frames.append(riding.frames[rows_of(group, part)[1]])
+    return np.unique(np.concatenate(frames))
 
 
 def _in_words(parts: TurbineSystem, frame: str) -> str:
@@ -134,7 +144,8 @@ class FlexibleMachine:
         )
         self._riders = [attach(turbine, self.parts, group) for group in stations]
         self.motions = tuple(riders.motion for riders in self._riders)
-        self._forces = Forces.none(len(self.system))
+        afloat = _afloat(self._riders, stations)
+        self._forces = Forces.stiff_on(len(self.system), afloat)
         self.loads: Sequence[Loads] = ()  #: of the load models, in the last balance
         tower = [_riding(turbine, self.parts, group, "tower") for group in stations]
         self.sensors = Sensors(turbine, self.parts, options.pitch, tower, gauges or Gauges())
@@ -237,7 +248,7 @@ class FlexibleMachine:
         """Commit the step."""
         self.start(self._trial.settled())
         if self.ledger is not None:
-            self.ledger.add(self.accepted, self._forces.follower, self.given(self.drive_speed))
+            self.ledger.add(self.accepted, self._forces, self.given(self.drive_speed))
 
     def reject(self, time: float) -> None:
         """Return to the accepted state."""
@@ -246,9 +257,9 @@ class FlexibleMachine:
     def forces(self, loads: Sequence[Loads]) -> Forces:
         """Loads on the stations as loads on the frames; the array is used again."""
         self.loads = loads
-        self._forces.follower[:] = 0.0
+        self._forces.clear()
         for riders, load in zip(self._riders, loads, strict=True):
-            riders.add_loads(load, self._forces.follower)
+            riders.add_loads(load, self._forces)
         return self._forces
 
     def record(self) -> Mapping[str, float | Array]:

@@ -10,7 +10,7 @@ from scipy.interpolate import CubicSpline
 
 from galerna.contract import Array
 from galerna.signals import Signal, evaluate
-from galerna.structure.frames import rotation_about
+from galerna.structure.frames import turned_by
 
 
 class StepPath:
@@ -111,5 +111,4 @@ class BasePath:
 
     def __call__(self, time: float) -> tuple[Array, Array]:
         shift = np.array([along(time) for along in self._shift])
-        roll, pitch, yaw = (rotation_about(k, about(time)) for k, about in enumerate(self._turn))
-        return self._place + shift, yaw @ pitch @ roll
+        return self._place + shift, turned_by(*(about(time) for about in self._turn))

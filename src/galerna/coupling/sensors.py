@@ -14,7 +14,7 @@ from galerna.coupling.snapshot import Snapshot
 from galerna.coupling.tower_sensors import TowerSensors
 from galerna.structure.attachment import Attachment
 from galerna.structure.pairs import Integers
-from galerna.structure.system import State
+from galerna.structure.system import Forces, State
 from galerna.structure.turbine import TurbineSystem
 from galerna.turbine.model import Turbine
 
@@ -68,13 +68,13 @@ class Sensors:
 
     def _tower_loads(self, state: State, loads: Sequence[Loads]) -> Array:
         """What load models put on the tower's first frame (6,), in its axes."""
-        follower = np.zeros((len(self._system), 6))
+        forces = Forces.none(len(self._system))
         for riding, load in zip(self._riders, loads, strict=False):
             if riding is not None:
                 riders, rows = riding
                 riders.follow(state)
-                riders.add_loads(Loads(load.force[rows], load.moment[rows]), follower)
-        return follower[self.tower.base]
+                riders.add_loads(Loads(load.force[rows], load.moment[rows]), forces)
+        return forces.follower[self.tower.base]
 
 
 def rows_of(group: Sequence[Stations], part: str) -> tuple[list[Stations], Integers]:

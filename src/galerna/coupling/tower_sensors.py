@@ -19,7 +19,7 @@ from galerna.coupling.snapshot import (
 )
 from galerna.structure.beam import discretise
 from galerna.structure.bodies import moved, rigid_body, weight_of
-from galerna.structure.frames import log_so3
+from galerna.structure.frames import log_so3, roll_pitch_yaw
 from galerna.structure.system import Root, State
 from galerna.structure.turbine import TOWER_ELEMENTS, TurbineSystem, axis_curve
 from galerna.turbine.model import Turbine
@@ -37,7 +37,9 @@ class TowerSensors:
         self.base, self.nacelle = int(self.nodes[0]), system.names.index("nacelle")
         self.bearing = system.pair("yaw bearing")
         self.head = int(system.pairs.ends[self.bearing, 0])  # the tower's top carries this side
+        self.platform = int(parts.parts["platform"][0]) if "platform" in parts.parts else self.base
         self._base_place = described.position[self.base].copy()
+        self._platform_place = described.position[self.platform].copy()
         self._head_turn = described.rotation[self.head].copy()
         self._top = described.position[self.nacelle] - self._base_place
         self._foot = turbine.tower.axis[0] - self._base_place
@@ -61,7 +63,7 @@ class TowerSensors:
         found: tuple[Channel, ...] = c.YAW_BEARING + c.TOWER_TOP + c.TOWER_BASE
         if self._weights is not None:
             found += c.TOWER_SECTION_DISPLACEMENTS + c.TOWER_SECTION_LOADS
-        return found + c.BASE if self.base else found
+        return found + c.BASE + c.BASE_RATES if self.base else found
 
     def record(self, at: Snapshot) -> dict[str, float | Array]:
         """All channels."""
@@ -80,6 +82,8 @@ class TowerSensors:
             values.update(named(c.TOWER_SECTION_LOADS, loads))
         if self.base:
             values.update(named(c.BASE, self.base_motion(state)))
+            rates = [self.base_velocity(state), self.base_acceleration(state)]
+            values.update(named(c.BASE_RATES, np.concatenate(rates)))
         return values
 
     def top_acceleration(self, state: State) -> Array:
@@ -92,20 +96,19 @@ class TowerSensors:
 
     def base_velocity(self, state: State) -> Array:
         """Velocity m/s and angular velocity rad/s (6,) of the base in global axes."""
-        return (state.velocity[self.base].reshape(2, 3) @ state.rotation[self.base].T).ravel()
+        at = self.platform
+        return (state.velocity[at].reshape(2, 3) @ state.rotation[at].T).ravel()
 
     def base_acceleration(self, state: State) -> Array:
         """Acceleration m/s2 and angular acceleration rad/s2 (6,) of the base in global axes."""
-        own = np.stack([true_acceleration(state, self.base), state.acceleration[self.base, 3:]])
-        return (own @ state.rotation[self.base].T).ravel()
+        at = self.platform
+        own = np.stack([true_acceleration(state, at), state.acceleration[at, 3:]])
+        return (own @ state.rotation[at].T).ravel()
 
     def base_motion(self, state: State) -> Array:
         """Displacement m and rotation rad (6,) of the base; about z first, about x last."""
-        R = state.rotation[self.base]
-        roll, yaw = np.arctan2(R[2, 1], R[2, 2]), np.arctan2(R[1, 0], R[0, 0])
-        pitch = np.arcsin(np.clip(-R[2, 0], -1.0, 1.0))
-        shift = state.position[self.base] - self._base_place
-        return np.concatenate([shift, [roll, pitch, yaw]])
+        shift = state.position[self.platform] - self._platform_place
+        return np.concatenate([shift, roll_pitch_yaw(state.rotation[self.platform])])
 
     def surface(self, state: State) -> tuple[Array, Array]:
         """Points (n,3) m along the tower's axis and its radius (n,) m there."""

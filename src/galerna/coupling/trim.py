@@ -7,7 +7,7 @@ rotor turns on in its weight and the sheared wind, and as base, yaw and pitch mo
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -15,8 +15,9 @@ import numpy as np
 from galerna.aero.bem.options import BemOptions
 from galerna.aero.bem.steady import SteadyRotor
 from galerna.case import LoadedCase
-from galerna.contract import Array
+from galerna.contract import Array, LoadModel, Loads
 from galerna.control.options import BaselineOptions
+from galerna.coupling.afloat import Floating
 from galerna.coupling.controllers import with_gains
 from galerna.coupling.equilibrium import SteadyMachine
 from galerna.coupling.flexible import FlexibleMachine
@@ -35,7 +36,7 @@ from galerna.signals import Signal
 from galerna.structure import TurbineOptions, with_initial_accelerations
 from galerna.structure.frames import log_se3
 from galerna.structure.initial import under_way, with_fitting_velocities
-from galerna.structure.system import State
+from galerna.structure.system import Forces, State
 from galerna.turbine.model import Turbine
 from galerna.units import DEG
 
@@ -48,12 +49,19 @@ class Trim:
     """What a case starts from, in the wind of its time 0 without turbulence.
 
     ``describe`` says what of the machine is flexible and how it is moved, for an operation.
+    A platform that floats is held in ``pose`` meanwhile; ``water`` is what it floats in.
     """
 
     def __init__(
-        self, case: LoadedCase, turbine: Turbine, wind: WindField, describe: Describe
+        self,
+        case: LoadedCase,
+        turbine: Turbine,
+        wind: WindField,
+        describe: Describe,
+        floating: Floating | None = None,
     ) -> None:
         self._case, self._turbine, self._describe = case, turbine, describe
+        self._floating = floating
         self._settings = case.case
         self._wind = wind.without_turbulence().held_everywhere()
         self._machine: SteadyMachine | None = None
@@ -78,12 +86,28 @@ class Trim:
         guess = Signal.constant(rigid.pitch)
         machine = self._steady(replace(operation, pitch=(guess,) * len(operation.pitch)))
         self._point = operating_point(machine.torque, strategy, rigid)
+        if self._floating is not None:
+            pitch = np.full(len(operation.pitch), self._point.pitch)
+            self._floating.settle(machine, self._point.rotor_speed, pitch)
+            self._point = operating_point(machine.torque, strategy, self._point)
         return self._point.rotor_speed, self._point.pitch
 
-    def start(self, machine: FlexibleMachine, operation: PrescribedOperation) -> float:
-        """Start a machine as an operation says; returns the torque N m that holds its shaft."""
+    def start(
+        self,
+        machine: FlexibleMachine,
+        operation: PrescribedOperation,
+        models: Mapping[str, LoadModel],
+    ) -> float:
+        """Start a machine as an operation says; returns the torque N m that holds its shaft.
+
+        ``models`` are the loads on it, in the order of its motions.
+        """
         steady = self._machine or self._steady(operation)
         speed = float(operation.rotor_speed.value[0])
+        if self._floating is not None:
+            first_pitch = np.array([angle.value[0] for angle in operation.pitch])
+            self._floating.settle(steady, speed, first_pitch)
+            self._floating.displace(steady)
         turned = SignalPath(operation.rotor_speed, integral=True)
         pitch = [SignalPath(angle) for angle in operation.pitch]
 
@@ -103,10 +127,31 @@ class Trim:
             velocity=_rate(before, after, 2.0 * step),
         )
         first = with_fitting_velocities(machine.system, first)
-        first = with_initial_accelerations(machine.system, first, steady.forces())
+        forces = self._forces(machine, first, steady, models)
+        first = with_initial_accelerations(machine.system, first, forces)
         step, scheme = self._settings.time_step_s, machine.integrator.scheme
         machine.start(under_way(machine.system, first, scheme, step))
         return torque
+
+    def _forces(
+        self,
+        machine: FlexibleMachine,
+        first: State,
+        steady: SteadyMachine,
+        models: Mapping[str, LoadModel],
+    ) -> Forces:
+        """The air's loads of the steady machine, and the water's with their added mass."""
+        air = steady.forces().follower.copy()
+        machine.start(first)
+        water = self._floating.water.models if self._floating is not None else {}
+        forces = machine.forces(
+            [
+                model.loads(0.0, motion) if name in water else Loads.zero(len(motion.position))
+                for (name, model), motion in zip(models.items(), machine.motions, strict=True)
+            ]
+        )
+        forces.follower += air
+        return forces
 
     def _point_holds(self, operation: PrescribedOperation) -> bool:
         """Whether an operation is the point that was found, not one that was given in part."""
@@ -135,12 +180,18 @@ class Trim:
         self._machine = SteadyMachine(
             self._turbine,
             self._wind,
-            self._describe(operation),
+            self._held(self._describe(operation)),
             air_density=settings.air_density_kg_m3,
             aerodynamics=self._aerodynamics(),
             drag=settings.tower_and_nacelle_drag,
         )
         return self._machine
+
+    def _held(self, options: TurbineOptions) -> TurbineOptions:
+        """The options with a platform that floats held in its pose."""
+        if self._floating is None:
+            return options
+        return replace(options, base_motion=self._floating.pose)
 
 
 def _rate(before: State, after: State, duration: float) -> Array:

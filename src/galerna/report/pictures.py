@@ -11,6 +11,8 @@ from galerna.report.inflow import RotorCircle, inflow_figure
 from galerna.report.rotor import (
     MACHINE_CHANNELS,
     ROTOR_CHANNELS,
+    floating_figure,
+    floats,
     machine_figure,
     main_channels,
     rotor_figure,
@@ -51,8 +53,10 @@ def plot_result(
 def _usual(
     dataset: xarray.Dataset, wind: Inflow | None
 ) -> Iterator[tuple[str, Callable[[], Figure]]]:
-    if main_channels(dataset) is MACHINE_CHANNELS:
+    if MACHINE_CHANNELS[-1] in main_channels(dataset):
         yield "machine", lambda: machine_figure(dataset)
+    if floats(dataset):
+        yield "platform", lambda: floating_figure(dataset)
     if any(name in dataset for name in ROTOR_CHANNELS):
         yield "rotor", lambda: rotor_figure(dataset)
     if "radius" in dataset.dims:

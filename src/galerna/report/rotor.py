@@ -45,16 +45,39 @@ MACHINE_CHANNELS = (
     "tower_base_fore_aft_moment",
 )
 
+#: the same of a platform that floats
+FLOATING_CHANNELS = (
+    "wave_elevation",
+    "platform_surge",
+    "platform_sway",
+    "platform_heave",
+    "platform_roll",
+    "platform_pitch",
+    "platform_yaw",
+    "fairlead_tension",
+)
+
 
 def main_channels(dataset: xarray.Dataset) -> tuple[str, ...]:
     """What is shown first of a result: of the machine where it moves, of the rotor else."""
     moves = "blade_root_out_of_plane_moment" in dataset or "electrical_power" in dataset
-    return MACHINE_CHANNELS if moves else ROTOR_CHANNELS
+    afloat = FLOATING_CHANNELS if floats(dataset) else ()
+    return (MACHINE_CHANNELS if moves else ROTOR_CHANNELS) + afloat
+
+
+def floats(dataset: xarray.Dataset) -> bool:
+    """Whether a result is that of a platform in the sea."""
+    return "wave_elevation" in dataset and "platform_surge" in dataset
 
 
 def machine_figure(dataset: xarray.Dataset) -> Figure:
     """Operation, loads and displacements over time; see ``rotor_figure``."""
     return rotor_figure(dataset, MACHINE_CHANNELS, "Machine over time")
+
+
+def floating_figure(dataset: xarray.Dataset) -> Figure:
+    """Waves, platform and mooring lines over time; see ``rotor_figure``."""
+    return rotor_figure(dataset, FLOATING_CHANNELS, "Platform over time")
 
 
 def rotor_figure(
@@ -102,6 +125,6 @@ def _draw(ax: Axes, variable: xarray.DataArray) -> None:
         ax.plot(time, values[:, 0], color=COLOURS[0], label=f"every {dim}")
     else:
         for i, place in enumerate(variable[dim].values):
-            name = f"{dim} {place:g}" if dim == "blade" else "xyz"[i]
+            name = f"{dim} {place:g}".replace("_", " ")
             ax.plot(time, values[:, i], color=COLOURS[i % len(COLOURS)], label=name)
     ax.legend(ncols=3, loc="lower right", bbox_to_anchor=(1.0, 0.97), borderaxespad=0.0)

@@ -17,7 +17,8 @@ from galerna.contract import Array, Loads, Motion
 from galerna.errors import InputError
 
 from .blocks import FAST, apply, apply_transposed, multiply3, multiply3_transposed
-from .frames import exp_se3, inverse_tangent_slope, inverse_tangents, log_se3, tangent
+from .forces import BLOCKS, Forces
+from .frames import exp_se3, hat, inverse_tangent_slope, inverse_tangents, log_se3, tangent
 from .pairs import Integers
 from .system import State
 
@@ -207,11 +208,41 @@ class Attachment:
             self._vectors, self._rotation, self._riding,
         )  # fmt: skip
 
-    def add_loads(self, loads: Loads, follower: Array) -> None:
-        """Add loads on the stations, where they were last, to ``follower`` (n,6) of the frames."""
-        if loads.stiffness is not None or loads.damping is not None or loads.mass is not None:
-            raise InputError("loads", "tangents of loads are taken on frames alone, not between")
+    @property
+    def frames(self) -> Integers:
+        """The frame (n,) on which each station rides, where it does not stand between two."""
+        return self._ends[:, 0]
+
+    def add_loads(self, loads: Loads, forces: Forces) -> None:
+        """Add loads on the stations, where they were last, to ``forces`` on the frames.
+
+        Those with tangents turn with nothing: their stations stand on frames, not between.
+        """
+        if any(getattr(loads, name) is not None for name in BLOCKS):
+            self._add_stiff(loads, forces)
+            return
         _take_back(
             self._ends, self._fraction, self._riding, self._vectors[0], loads.force, loads.moment,
-            follower,
+            forces.follower,
         )  # fmt: skip
+
+    def _add_stiff(self, loads: Loads, forces: Forces) -> None:
+        if self._fraction.any():
+            raise InputError("loads", "tangents of loads are taken on frames alone, not between")
+        for i, frame in enumerate(self.frames):
+            arm = self._vectors[0, i] - self._riding.base_position[i]
+            force, dead = loads.force[i], forces.dead[frame]
+            dead[:3] += force
+            dead[3:] += loads.moment[i]
+            rides_apart = arm.any()
+            if rides_apart:
+                dead[3:] += np.cross(arm, force)
+                carry = np.eye(6)
+                carry[:3, 3:] = -hat(arm)
+            for name in BLOCKS:
+                block = getattr(loads, name)
+                if block is not None:
+                    own = carry.T @ block[i] @ carry if rides_apart else block[i]
+                    getattr(forces, name)[frame] += own
+            if rides_apart and forces.stiffness is not None:
+                forces.stiffness[frame, 3:, 3:] -= hat(force) @ hat(arm)

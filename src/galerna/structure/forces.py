@@ -11,13 +11,16 @@ from galerna.errors import InputError
 
 from .pairs import Integers
 
+BLOCKS = ("stiffness", "damping", "mass")
+
 
 @dataclass(eq=False, slots=True)
 class Forces:
     """Loads on all n frames: ``dead`` (n,6) in global and ``follower`` (n,6) in body axes.
 
     ``stiffness``, ``damping`` and ``mass`` (n,6,6), where given, are minus the
-    derivatives of the dead loads over motion, velocity and acceleration in global axes.
+    derivatives of the dead loads over motion, velocity and acceleration in global axes;
+    they vanish but on the frames ``stiff`` (k,), where that is given.
     """
 
     dead: Array
@@ -25,6 +28,7 @@ class Forces:
     stiffness: Array | None = None
     damping: Array | None = None
     mass: Array | None = None
+    stiff: Integers | None = None
 
     @classmethod
     def none(cls, n: int) -> Forces:
@@ -35,7 +39,7 @@ class Forces:
         """A load model's answer on the frames ``nodes`` (k,), each of which may repeat."""
         forces = cls.none(n)
         np.add.at(forces.dead, nodes, np.hstack([loads.force, loads.moment]))
-        for name in ("stiffness", "damping", "mass"):
+        for name in BLOCKS:
             blocks = getattr(loads, name)
             if blocks is not None:
                 total = np.zeros((n, 6, 6))
@@ -43,16 +47,31 @@ class Forces:
                 setattr(forces, name, total)
         return forces
 
+    @classmethod
+    def stiff_on(cls, n: int, nodes: Integers) -> Forces:
+        """No loads on n frames, with room for blocks on the frames ``nodes`` (k,)."""
+        if not len(nodes):
+            return cls.none(n)
+        blocks = {name: np.zeros((n, 6, 6)) for name in BLOCKS}
+        return cls(np.zeros((n, 6)), np.zeros((n, 6)), **blocks, stiff=np.unique(nodes))
+
+    def clear(self) -> None:
+        """Take all loads away, and the blocks."""
+        self.dead[:] = 0.0
+        self.follower[:] = 0.0
+        if self.stiff is not None:
+            for name in BLOCKS:
+                getattr(self, name)[self.stiff] = 0.0
+
     def scaled(self, factor: float) -> Forces:
         """The loads times a factor."""
-        blocks = (
-            None if b is None else factor * b for b in (self.stiffness, self.damping, self.mass)
-        )
-        return Forces(factor * self.dead, factor * self.follower, *blocks)
+        given = {name: getattr(self, name) for name in BLOCKS}
+        blocks = {name: None if b is None else factor * b for name, b in given.items()}
+        return Forces(factor * self.dead, factor * self.follower, **blocks, stiff=self.stiff)
 
     def check(self, n: int) -> None:
         """Raise InputError where an array does not belong to n frames."""
-        for name in Forces.__dataclass_fields__:
+        for name in ("dead", "follower", *BLOCKS):
             values = getattr(self, name)
             shape = (n, 6) if name in ("dead", "follower") else (n, 6, 6)
             if values is not None and np.shape(values) != shape:
@@ -69,16 +88,17 @@ def add_load_tangents(
     """Add stiff loads' blocks, turned from global into body axes."""
     if forces.stiffness is None and forces.damping is None and forces.mass is None:
         return
+    at = np.arange(len(R)) if forces.stiff is None else forces.stiff
     if forces.stiffness is not None:
-        nodes += in_body_axes(forces.stiffness, R)
+        nodes[at] += in_body_axes(forces.stiffness[at], R[at])
     # a variation turns the body's axes, in which v is given, and with them the global velocity
-    rotated = np.zeros_like(nodes)
-    rotated[:, :3, 3:] = -hats(v[:, :3])
-    rotated[:, 3:, 3:] = -hats(v[:, 3:])
+    rotated = np.zeros((len(at), 6, 6))
+    rotated[:, :3, 3:] = -hats(v[at, :3])
+    rotated[:, 3:, 3:] = -hats(v[at, 3:])
     if forces.damping is not None:
-        nodes += in_body_axes(forces.damping, R) @ (velocity_tangent + rotated)
+        nodes[at] += in_body_axes(forces.damping[at], R[at]) @ (velocity_tangent[at] + rotated)
     if forces.mass is not None:
-        nodes += in_body_axes(forces.mass, R) @ acceleration_tangent
+        nodes[at] += in_body_axes(forces.mass[at], R[at]) @ acceleration_tangent[at]
 
 
 def in_body_axes(blocks: Array, R: Array) -> Array:

@@ -362,3 +362,14 @@ def inverse_tangent_slope(d: Array, y: Array, dual: bool) -> Array:
     _add_even_slope(d, y, 3 - coupled, bend, slope, E, row, 3)
     _add_even_curvature(d, y, coupled, bend, slope, curvature, E, row, 3)
     return E
+
+
+def roll_pitch_yaw(R: Array) -> Array:
+    """Roll, pitch and yaw (3,) rad of a rotation: about z first, then about y, about x last."""
+    pitch = np.arcsin(min(max(-R[2, 0], -1.0), 1.0))
+    return np.array([np.arctan2(R[2, 1], R[2, 2]), pitch, np.arctan2(R[1, 0], R[0, 0])])
+
+
+def turned_by(roll: float, pitch: float, yaw: float) -> Array:
+    """Rotation (3,3) by yaw about z first, then pitch about y, roll about x last, rad."""
+    return np.asarray(rotation_about(2, yaw) @ rotation_about(1, pitch) @ rotation_about(0, roll))

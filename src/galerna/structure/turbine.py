@@ -21,14 +21,14 @@ from galerna.turbine.model import Drivetrain, SectionProperties, Turbine
 from .assembly import GROUND, Structure
 from .beam import Beam, Curve, damped, discretise
 from .bodies import moved, rigid_body
+from .foundation import PlatformModel, add_ground, add_platform
 from .frames import rotation_about
-from .joints import ALL, Angle, Joint, Path, hinge, turning
+from .joints import ALL, Angle, Path, hinge, turning
 from .modes import natural_modes
 from .pairs import Integers
 from .system import System
 
 BLADE_ELEMENTS, TOWER_ELEMENTS = 20, 10
-FOOT_MASS = 1.0  #: kg and kg m2, of a foot that is moved
 SMALL_ARM = 0.1  #: m, radius of gyration where the data give no moment of inertia
 
 
@@ -41,8 +41,9 @@ class TurbineOptions:
     ``azimuth`` rad are the first shape's. ``rotor_motion``, ``pitch_motion`` and ``yaw_motion``
     rad turn rotor, blades and nacelle on from there as functions of time. ``base_motion`` says
     where the tower's foot or the platform's reference point is, (3,) m, and how it is turned,
-    (3,3); without it a platform is free and a foot stands still. Without
-    ``flexible_shaft`` hub and generator are one.
+    (3,3); without it a platform is free and a foot stands still. Of a platform the directions
+    ``base_locked`` alone follow it (0 to 2 along, 3 to 5 about the axes). ``platform`` says how
+    it is modelled. Without ``flexible_shaft`` hub and generator are one.
     """
 
     blade_elements: int = BLADE_ELEMENTS
@@ -56,6 +57,8 @@ class TurbineOptions:
     pitch_motion: tuple[Angle, ...] | None = None
     yaw_motion: Angle | None = None
     base_motion: Path | None = None
+    base_locked: tuple[int, ...] = ALL
+    platform: PlatformModel = "rigid"
     gravity: tuple[float, float, float] = (0.0, 0.0, -9.80665)
 
     def __post_init__(self) -> None:
@@ -118,22 +121,17 @@ class _Builder:
         )
 
     def _foundation(self) -> None:
-        platform, path = self.turbine.platform, self.options.base_motion
-        self.base = GROUND
+        platform, options, tower = self.turbine.platform, self.options, self.turbine.tower
         if platform is None:
-            if path is not None:
-                foot = self.turbine.tower.axis[0]
-                body = rigid_body(FOOT_MASS, None, FOOT_MASS * np.ones(3))
-                self.base = self.structure.frame("foot", foot, mass=body)
-                self.structure.join(_moved_base(self.base, foot, path))
-            return
-        center = np.subtract(platform.center_of_mass, platform.reference_point)
-        body = rigid_body(platform.mass, center, np.array(platform.inertia))
-        self.base = self.structure.frame("platform", np.array(platform.reference_point), mass=body)
-        place = np.array(platform.reference_point)
-        self._note("platform", ["platform"], np.zeros(1), place, np.eye(3))
-        if path is not None:
-            self.structure.join(_moved_base(self.base, place, path))
+            below = add_ground(self.structure, tower.axis[0], options.base_motion)
+        else:
+            below = add_platform(
+                self.structure, platform, tower,
+                options.platform, options.base_motion, options.base_locked,
+            )  # fmt: skip
+        self.base = below.base
+        for name, part in below.parts.items():
+            self._note(name, part.frames, part.span, part.origin, part.axes)
 
     def _tower(self) -> None:
         tower = self.turbine.tower
@@ -331,16 +329,6 @@ def damping_of(beam: Beam, ratio: float) -> Array:
     order = np.argsort(tip[:, 1] / (tip[:, 0] + tip[:, 1]))
     flap, edge = ratio / (np.pi * modes.frequency[order])
     return np.array([flap, edge, flap, edge, flap, flap])
-
-
-def _moved_base(frame: str, place: Array, path: Path) -> Joint:
-    """A frame that was described at ``place`` (3,) m, unturned, and follows a path."""
-
-    def travelled(time: float) -> tuple[Array, Array]:
-        x, R = path(time)
-        return x - place, R
-
-    return Joint("base", GROUND, frame, place, np.eye(3), ALL, placement=travelled)
 
 
 def _still(time: float) -> float:

@@ -42,11 +42,14 @@ def blade_frames(blade: Blade, span: Array) -> tuple[Array, Array]:
 def part_frames(turbine: Turbine, part: str, span: Array) -> tuple[Array, Array]:
     """Origins (n,3) m and axes (n,3,3) of a part's stations at ``span`` (n,), in its own axes.
 
-    A tower's own axes are the global ones; rigid bodies have all stations in their origin.
+    A tower's own axes are the global ones; a flexible spar's z points from still water to its
+    keel; rigid bodies have all stations in their origin.
     """
     if part.startswith("blade"):
         return blade_frames(turbine.blade, span)
     aligned = np.tile(np.eye(3), (len(span), 1, 1))
     if part == "tower":
         return axis_positions(turbine.tower.axis_span, turbine.tower.axis, span), aligned
+    if part == "spar" and turbine.platform is not None:
+        return turbine.platform.draft * np.outer(span, [0.0, 0.0, 1.0]), aligned
     return np.zeros((len(span), 3)), aligned
