@@ -12,6 +12,7 @@ from galerna.coupling.flexible import FlexibleMachine
 from galerna.coupling.floating import Burden, Pose, WaterAtRest
 from galerna.errors import InputError
 from galerna.structure import TurbineOptions, with_initial_accelerations
+from galerna.structure.attachment import Attachment
 from galerna.structure.foundation import Spar
 from galerna.structure.frames import exp_so3, log_so3
 from galerna.structure.joints import ALL
@@ -196,3 +197,40 @@ def test_forces_with_room_for_tangents_are_cleared() -> None:
     again: Forces = machine.forces([water.loads(0.0, machine.motions[0])])
     assert np.array_equal(again.mass, kept[0])
     assert np.array_equal(again.dead, kept[1])
+
+
+def test_the_account_of_energy_closes_afloat() -> None:
+    options = TurbineOptions(blade_elements=0, tower_elements=4, rotor="locked")
+    machine = FlexibleMachine(OC3, [Water.stations], options, energy=True)
+    march(machine, heave_only(), np.array([3.0, 0, 1.0, 0, 0.03, 0]), 0.05, 200)
+    energy = machine.ledger.values()
+    moved = sum(abs(energy[f"energy_{kind}"]) for kind in ("kinetic", "potential", "water"))
+    assert abs(energy["energy_defect"]) < 2e-3 * moved
+    assert abs(energy["energy_water"]) > 1e5
+
+
+def test_tangents_of_a_load_that_stands_off_its_frame() -> None:
+    """A spring on an arm: the frame's stiffness is minus the derivative of what arrives there."""
+    state, pull = floating().system.initial_state(), np.array([3.0, -2.0, 5.0])
+    place, K = np.array([1.0, 2.0, -4.0]), np.diag([7.0, 3.0, 2.0])
+    node = np.array([[1, 1]])
+    stations = Attachment(state, node, np.zeros(1), place[None], np.eye(3)[None])
+
+    def arrived(shift: np.ndarray, turn: np.ndarray) -> Forces:
+        moved = state.copy()
+        moved.position[1] = state.position[1] + shift
+        moved.rotation[1] = exp_so3(turn) @ state.rotation[1]
+        stations.follow(moved)
+        block = np.zeros((1, 6, 6))
+        block[0, :3, :3] = K
+        force = pull - K @ (stations.motion.position[0] - place)
+        forces = Forces.stiff_on(len(state.position), np.array([1]))
+        stations.add_loads(Loads(force[None], np.zeros((1, 3)), block), forces)
+        return forces
+
+    h = 1e-6
+    for k in range(6):
+        step = h * np.eye(6)[k]
+        ahead, behind = (arrived(s * step[:3], s * step[3:]).dead[1] for s in (1.0, -1.0))
+        expected = arrived(np.zeros(3), np.zeros(3)).stiffness[1][:, k]
+        assert -(ahead - behind) / (2 * h) == pytest.approx(expected, abs=1e-6)

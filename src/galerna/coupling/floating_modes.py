@@ -79,7 +79,8 @@ def _direction(shape: Array, node: int) -> tuple[int, float]:
 def _at(base: Forces, node: int, database: HydroDatabase, frequency: float) -> Forces:
     """Tangents with the coefficients of a frequency rad/s in place of the infinite one's."""
     added, damping = database.at(frequency)
-    assert base.mass is not None and base.damping is not None and base.stiffness is not None
+    assert base.mass is not None
+    assert base.damping is not None
     mass, loss = base.mass.copy(), base.damping.copy()
     mass[node] += added - database.added_mass_infinite
     loss[node] += damping
