@@ -1,0 +1,213 @@
+"""Fit of a passive state space to added mass and radiation damping.
+
+K(i w) = B(w) + i w (A(w) - A_inf), entries over the root of the diagonals' largest values. The
+free parameters are those of ``wave_rows``, so every step of the least squares is stable, passive,
+symmetric, strictly proper and zero at w = 0. A_inf shifts a little with the fit: its error in
+the panels grows with frequency in K, and it is known better from all of A(w) (Ogilvie, 5th
+Symp. Naval Hydrodynamics, 1964).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.optimize import least_squares
+from scipy.sparse.csgraph import connected_components
+
+from galerna.contract import Array
+from galerna.errors import ConvergenceError, InputError
+from galerna.hydro.database import Complex, HydroDatabase
+
+from .state_space import RadiationStateSpace, joined
+from .wave_rows import Rows, parameters_of, realized, residuals, rise, slopes, transfer, unpacked
+
+COUPLED = 2e-3  #: of the root of the diagonals' product: less is no coupling
+FELT = 1e-6  #: of the largest force or moment: less is no radiation
+TOLERANCE = 0.01
+LARGEST_ERROR = 0.3  #: above it no fit is of use
+MOST_SECTIONS = 6
+FALLS = 0.8  #: of the root mean square, at least, by one more section
+SEARCH, POLISH = 40, 200  #: evaluations of the Jacobian
+SPREADS = ((0.5, 2.0, 0.5), (0.3, 3.0, 0.7), (0.5, 2.0, 0.3))
+NEW_SECTIONS = (0.4, 1.0, 2.5)  #: frequencies over the middle one, of a section that comes new
+
+
+def radiation_of(database: HydroDatabase) -> Complex:
+    """K(i w) (n,6,6) in N s/m, N s, N m s of a database, symmetric."""
+    rest = database.added_mass - database.added_mass_infinite
+    K = database.damping + 1j * database.frequency[:, None, None] * rest
+    return np.asarray(0.5 * (K + K.transpose(0, 2, 1)), dtype=complex)
+
+
+def fit_radiation(
+    database: HydroDatabase, *, tolerance: float = TOLERANCE, most_sections: int = MOST_SECTIONS
+) -> RadiationStateSpace:
+    """The passive state space of a database's radiation, each set of coupled modes for itself.
+
+    Sections are added until the largest error is below ``tolerance`` of the largest
+    coefficient, or more do not help; the notes tell what is left. Raises InputError for
+    coefficients that are not finite, ConvergenceError where the fit misses them by far.
+    """
+    K, shift = radiation_of(database), np.zeros((6, 6))
+    if not np.isfinite(K).all():
+        raise InputError("radiation", "added mass or damping of the database is not finite")
+    error, rms = np.zeros((6, 6)), np.zeros((6, 6))
+    parts = []
+    for modes in coupled_modes(K):
+        square = np.ix_(modes, modes)
+        block = _Block.of(database.frequency, K[:, square[0], square[1]])
+        rows = _fit_block(block, tolerance, most_sections)
+        A, B = realized(rows)
+        whole = np.zeros((len(A), 6))
+        whole[:, modes] = B * block.scale
+        parts.append((A, whole))
+        distance, own = block.distance(rows)
+        shift[square] = own * np.outer(block.scale, block.scale)
+        error[square] = np.abs(distance).max(axis=0)
+        rms[square] = np.sqrt((np.abs(distance) ** 2).mean(axis=0))
+    notes = _notes(error, rms, tolerance)
+    infinite = 0.5 * (database.added_mass_infinite + database.added_mass_infinite.T) - shift
+    return RadiationStateSpace(*joined(parts), infinite, error, rms, notes)
+
+
+def coupled_modes(K: Complex) -> list[list[int]]:
+    """Modes that radiate, in sets that do not couple with each other."""
+    size = np.abs(K).max(axis=0)
+    own = size.diagonal()
+    largest = np.repeat([own[:3].max(), own[3:].max()], 3)
+    felt = np.flatnonzero(own > FELT * largest)
+    coupling = size[np.ix_(felt, felt)] > COUPLED * np.sqrt(np.outer(own[felt], own[felt]))
+    count, label = connected_components(coupling, directed=False)
+    return [felt[label == k].tolist() for k in range(count)]
+
+
+@dataclass(frozen=True, eq=False)
+class _Block:
+    """Coupled modes: ``K`` (n,m,m) over ``scale`` on both sides, weighed by its ``largest``."""
+
+    frequency: Array
+    K: Complex
+    scale: Array
+    largest: Array
+
+    @classmethod
+    def of(cls, frequency: Array, K: Complex) -> _Block:
+        scale = np.sqrt(np.abs(K).max(axis=0).diagonal())
+        over = K / np.outer(scale, scale)
+        largest = np.maximum(np.abs(over).max(axis=0), 0.02)
+        return cls(frequency, over, scale, largest)
+
+    def distance(self, rows: Rows) -> tuple[Complex, Array]:
+        """Fit minus data over the largest (n,m,m), and the rise (m,m) of A_inf taken out of it."""
+        apart = transfer(*rows, self.frequency) - self.K
+        mass = rise(self.frequency, apart)
+        apart -= 1j * self.frequency[:, None, None] * mass
+        return apart / self.largest, mass
+
+    def waves(self) -> tuple[Array, Array, float]:
+        """Powers (m,) and shapes (m,m) of the waves at most, largest first, and the middle
+        frequency rad/s."""
+        power = self.K.real.trace(axis1=1, axis2=2)
+        w = self.frequency
+        middle = float(np.trapezoid(power * w, w) / np.trapezoid(power, w))
+        values, shapes = np.linalg.eigh(np.trapezoid(self.K.real, w, axis=0))
+        largest = np.linalg.eigvalsh(self.K.real).max(axis=0)[::-1]
+        return largest, shapes[:, ::-1], middle if values[-1] > 0.0 else 1.0
+
+
+def _fit_block(block: _Block, tolerance: float, most: int) -> Rows:
+    """The rows of the fewest sections that do; their number is the rank of the damping."""
+    power, shapes, middle = block.waves()
+    count = max(1, int((power > 0.5 * tolerance * power[0]).sum()))
+    amplitude = np.sqrt(2.0 * np.maximum(power[:count], 0.0))[:, None] * shapes.T[:count]
+    best, least = None, np.inf
+    for q in range(2, most + 1):
+        starts = [_start(amplitude, middle, q, *spread) for spread in SPREADS]
+        if best is not None:
+            starts += [_grown(best, middle * ratio) for ratio in NEW_SECTIONS]
+        found = _least(block, starts)
+        distance = block.distance(found)[0]
+        rms = float(np.sqrt((np.abs(distance) ** 2).mean()))
+        if best is None or rms < least * FALLS:
+            best, least = found, rms
+        elif q > 3:
+            break
+        if np.abs(distance).max() < tolerance:
+            return found
+    assert best is not None
+    return best
+
+
+def _least(block: _Block, starts: list[Rows]) -> Rows:
+    """The best of least-squares fits from some starts, looked for shortly and then polished."""
+    found = [_solve(block, start, SEARCH) for start in starts]
+    return _solve(block, min(found, key=lambda each: each[1])[0], POLISH)[0]
+
+
+def _solve(block: _Block, start: Rows, most: int) -> tuple[Rows, float]:
+    """Least squares from a start in at most so many steps: rows and cost."""
+    r, q = start.a.shape
+    data = (r, q, block.frequency, block.K, 1.0 / block.largest)
+    least, bound = _bounds(start, block.frequency)
+    out = least_squares(
+        residuals, np.clip(parameters_of(start), least + 1e-9, bound - 1e-9), slopes, args=data,
+        bounds=(least, bound), x_scale="jac", max_nfev=most, ftol=1e-5, xtol=1e-7, gtol=1e-12,
+    )  # fmt: skip
+    return Rows(*unpacked(out.x, r, q, len(block.scale))), float(out.cost)
+
+
+def _bounds(rows: Rows, frequency: Array) -> tuple[Array, Array]:
+    """Least and largest parameters: sections stay within ten times the data's frequencies."""
+    n, whole = rows.a.size, parameters_of(rows).size
+    low, high = np.log(0.1 * frequency[0]), np.log(10.0 * frequency[-1])
+    least, bound = np.full(whole, -np.inf), np.full(whole, np.inf)
+    least[:n], least[n : 2 * n] = 2.0 * low, low
+    bound[:n], bound[n : 2 * n] = 2.0 * high, high
+    return least, bound
+
+
+def _start(
+    amplitude: Array, middle: float, q: int, low: float, high: float, damping: float
+) -> Rows:
+    """Sections from ``low`` to ``high`` times the middle frequency, of a damping ratio."""
+    r = len(amplitude)
+    own = np.tile(np.geomspace(low, high, q) * middle, (r, 1))
+    b = 2.0 * damping * own
+    G = np.zeros((r, q, 2, amplitude.shape[1]))
+    G[:, :, 0] = (b / q)[..., None] * amplitude[:, None]
+    y = 0.1 * (-1.0) ** np.arange(q)[:, None] * amplitude[:, None]
+    y[:, -1] = -y[:, :-1].sum(axis=1)
+    G[:, :, 1] = (own**2)[..., None] * y - b[..., None] * G[:, :, 0]
+    return Rows(own**2, b, G.reshape(r, 2 * q, -1))
+
+
+def _grown(rows: Rows, frequency: float) -> Rows:
+    """Rows with one more section each, which as yet does little."""
+    r, _, m = rows.G.shape
+    more = np.full((r, 1), frequency)
+    new = 0.01 * np.abs(rows.G[:, ::2]).mean(axis=1, keepdims=True) * np.ones((r, 2, m))
+    new[:, 1] *= -frequency
+    a, b = np.hstack([rows.a, more**2]), np.hstack([rows.b, more])
+    return Rows(a, b, np.concatenate([rows.G, new], axis=1))
+
+
+def _notes(error: Array, rms: Array, tolerance: float) -> tuple[str, ...]:
+    """What a fit leaves above its tolerance; ConvergenceError where that is far too much."""
+    names = ("surge", "sway", "heave", "roll", "pitch", "yaw")
+    worst = np.unravel_index(error.argmax(), error.shape)
+    if error[worst] > LARGEST_ERROR and rms[worst] > 0.1 * LARGEST_ERROR:
+        what = f"no passive fit comes nearer than {error[worst]:.0%} in {names[worst[0]]}"
+        hint = "check added mass and damping of the database: do they belong together?"
+        raise ConvergenceError("radiation", what, hint)
+    return tuple(_excess(names, error, rms, tolerance))
+
+
+def _excess(names: tuple[str, ...], error: Array, rms: Array, tolerance: float) -> Iterator[str]:
+    for i, j in zip(*np.triu_indices(6), strict=True):
+        if error[i, j] > tolerance:
+            yield (
+                f"radiation of {names[i]}-{names[j]}: the fit is off by at most "
+                f"{error[i, j]:.1%} of the largest value (root mean square {rms[i, j]:.2%})"
+            )
