@@ -1,0 +1,190 @@
+"""What must hold in a hydrodynamic database, and what tells of mixed-up units and signs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from galerna.contract import Array
+from galerna.errors import InputError
+from galerna.hydro.database import Complex, HydroDatabase
+from galerna.hydro.interpolation import refuse_failed, whole_circle
+from galerna.hydro.long_waves import group_velocity
+from galerna.hydro.rigid import MODES
+
+_ASYMMETRY = 0.05  # of the largest: coarse meshes of well-known panel codes reach 1 %
+_ACTIVE = 0.02  # largest damping below zero, over the modes' largest
+_LONG = 0.15  # k times the hull's depth and half its breadth: waves are long below
+
+
+def checked(base: HydroDatabase, where: str) -> HydroDatabase:
+    """The database itself, if it holds together. Raises InputError with the figures.
+
+    Shapes, rising frequencies, symmetric added mass and damping, a damping that takes energy
+    (its eigenvalues are not below zero), a density and gravity that belong to water.
+    """
+    _check_shapes(base, where)
+    _check_figures(base, where)
+    _check_symmetry(base, where)
+    _check_passivity(base, where)
+    return base
+
+
+def _check_shapes(base: HydroDatabase, where: str) -> None:
+    n, m = len(base.frequency), len(base.heading)
+    wanted = {
+        "added_mass": (n, 6, 6),
+        "damping": (n, 6, 6),
+        "added_mass_infinite": (6, 6),
+        "added_mass_zero": (6, 6),
+        "excitation": (n, m, 6),
+        "mean_drift": (n, m, 6),
+        "hydrostatic_stiffness": (6, 6),
+        "center_of_buoyancy": (3,),
+        "reference_point": (3,),
+    }
+    for name, shape in wanted.items():
+        value = getattr(base, name)
+        if value is not None and np.shape(value) != shape:
+            raise InputError(where, f"{name} is {np.shape(value)}, expected {shape}", "")
+
+
+def _check_figures(base: HydroDatabase, where: str) -> None:
+    frequency = base.frequency
+    if not len(frequency) or frequency[0] <= 0.0 or (np.diff(frequency) <= 0.0).any():
+        raise InputError(where, "frequencies must be positive and rise", "give them in rad/s")
+    if not len(base.heading) or (np.diff(base.heading) <= 0.0).any():
+        raise InputError(where, "headings must rise", "give them in rad, such as -pi ... pi")
+    if not (500.0 < base.water_density < 2000.0 and 1.0 < base.gravity < 30.0):
+        raise InputError(
+            where,
+            f"the water has {base.water_density:g} kg/m3 and gravity {base.gravity:g} m/s2",
+            "give SI units",
+        )
+    if not base.displaced_volume > 0.0:
+        raise InputError(where, f"displaced volume is {base.displaced_volume:g} m3", "")
+    if not base.water_depth > 0.0:
+        raise InputError(where, f"water depth is {base.water_depth:g} m", "it is positive")
+
+
+def scale(matrices: Array) -> Array:
+    """Square roots (6,6) of the products of the modes' largest diagonal entries, 1 where 0."""
+    diagonal = np.abs(np.diagonal(np.atleast_3d(matrices), axis1=-2, axis2=-1))
+    largest = np.nanmax(diagonal.reshape(-1, 6), axis=0)
+    root = np.sqrt(np.where(largest > 0.0, largest, 1.0))
+    return np.outer(root, root)
+
+
+def asymmetry(matrices: Array) -> float:
+    """Largest difference from the transpose, over ``scale``."""
+    return float(np.nanmax(np.abs(matrices - np.swapaxes(matrices, -1, -2)) / scale(matrices)))
+
+
+def _check_symmetry(base: HydroDatabase, where: str) -> None:
+    for name, matrices in (("added mass", base.added_mass), ("damping", base.damping)):
+        relative = np.abs(matrices - np.swapaxes(matrices, -1, -2)) / scale(matrices)
+        worst = float(np.nanmax(relative))
+        if worst > _ASYMMETRY:
+            k, i, j = np.unravel_index(np.nanargmax(relative), relative.shape)
+            raise InputError(
+                where,
+                f"{name} of {MODES[i]}-{MODES[j]} is {matrices[k, i, j]:.4g} and of "
+                f"{MODES[j]}-{MODES[i]} {matrices[k, j, i]:.4g} at {base.frequency[k]:.4g} rad/s; "
+                "they must be equal",
+                "look at the mesh, at the lid, or at the order of the file's columns",
+            )
+
+
+def smallest_damping(base: HydroDatabase) -> tuple[float, float]:
+    """Smallest eigenvalue of the damping over ``scale``, and its frequency rad/s."""
+    symmetric = 0.5 * (base.damping + np.swapaxes(base.damping, 1, 2)) / scale(base.damping)
+    solved = ~np.isnan(symmetric).any(axis=(1, 2))
+    smallest = np.linalg.eigvalsh(symmetric[solved])[:, 0]
+    k = int(smallest.argmin())
+    return float(smallest[k]), float(base.frequency[solved][k])
+
+
+def _check_passivity(base: HydroDatabase, where: str) -> None:
+    smallest, frequency = smallest_damping(base)
+    if smallest < -_ACTIVE:
+        raise InputError(
+            where,
+            f"the damping at {frequency:.4g} rad/s gives energy to the motion: its smallest "
+            f"eigenvalue is {smallest:.3g} of the largest entries",
+            "an irregular frequency without a lid, or a wrong sign",
+        )
+
+
+def haskind_damping(base: HydroDatabase) -> Array | None:
+    """Damping (n,6,6) that the excitation implies; None unless headings go round.
+
+    Haskind and Newman: B_ij = k / (8 pi rho g c_g) Integral X_i conj(X_j) d beta. It ties the
+    scales of damping, excitation and frequency together.
+    """
+    if not whole_circle(base.heading):
+        return None
+    around = np.arange(72) * (np.pi / 36.0)
+    refuse_failed(base.failed, "checked")
+    force: Complex = base.at_headings(around).excitation
+    integral = np.einsum("nmi,nmj->nij", force, force.conj()).real * (np.pi / 36.0)
+    speed = group_velocity(base.frequency, base.water_depth, base.gravity)
+    factor = base.wavenumber / (8.0 * np.pi * base.water_density * base.gravity * speed)
+    return np.asarray(factor[:, None, None] * integral)
+
+
+def haskind_ratio(base: HydroDatabase) -> float | None:
+    """Median of damping over Haskind's where that of the strongest translation is large."""
+    implied = haskind_damping(base)
+    if implied is None:
+        return None
+    mode = int(np.abs(base.damping[:, range(3), range(3)]).max(axis=0).argmax())
+    given, wanted = base.damping[:, mode, mode], implied[:, mode, mode]
+    strong = wanted > 0.2 * wanted.max()
+    return float(np.median(given[strong] / wanted[strong]))
+
+
+@dataclass(frozen=True)
+class LongWaves:
+    """What the longest waves of a database must do and do; ratios are 1 in theory.
+
+    ``heave``: excitation over the stiffness; ``surge``: excitation along x over i g k times
+    displaced and added mass; complex, so a time factor exp(-i w t) makes ``surge`` negative.
+    """
+
+    heave: complex
+    surge: complex
+
+
+def long_waves(base: HydroDatabase) -> LongWaves | None:
+    """Ratios at the first frequency; None where even its waves are not long beside the hull."""
+    k = float(base.wavenumber[0])
+    depth = abs(float(base.center_of_buoyancy[2]))
+    if k * (depth if np.isfinite(depth) else base.displaced_volume ** (1.0 / 3.0)) > _LONG:
+        return None
+    ahead = np.cos(base.heading)
+    m = int(np.abs(ahead).argmax())
+    force, still = base.excitation[0, m], base.hydrostatic_stiffness[2, 2]
+    mass = base.water_density * base.displaced_volume + base.added_mass[0, 0, 0]
+    heave = complex(force[2] / still) if still > 0.0 else complex(np.nan)
+    return LongWaves(heave, complex(force[0] / (1j * base.gravity * k * mass * ahead[m])))
+
+
+def require_cover(
+    base: HydroDatabase, frequency: Array, variance: Array, tolerance: float = 1e-3
+) -> float:
+    """The share of the sea's ``variance`` (n,) m2 above the database's last frequency.
+
+    ``frequency`` (n,) rad/s. Raises InputError where more than ``tolerance`` lies there.
+    """
+    total = float(np.sum(variance))
+    last = float(base.frequency[-1])
+    share = float(np.sum(variance[frequency > last]) / total) if total > 0.0 else 0.0
+    if share > tolerance:
+        raise InputError(
+            "hydrodynamic database",
+            f"the sea has energy ({100 * share:.2g} % of the variance) above w = {last:.4g} rad/s, "
+            f"where the database ends; the sea goes up to {frequency.max():.4g} rad/s",
+            "compute it to higher frequencies (galerna hydro), or cut the sea's spectrum there",
+        )
+    return share
