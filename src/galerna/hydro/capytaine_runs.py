@@ -20,12 +20,12 @@ from galerna.contract import Array
 from galerna.errors import InputError
 from galerna.hydro.database import Complex, HydroDatabase
 from galerna.hydro.far_field import ANGLES, FarField, Moving, Surface, kochin, mean_drift
-from galerna.hydro.long_waves import wavenumber
 from galerna.hydro.panels import Panels, displacement
 from galerna.hydro.rigid import MODES, turn
+from galerna.hydro.waves.dispersion import wavenumber
 from galerna.units import DEG
 
-HEADINGS = np.arange(-180, 181, 30) * DEG
+HEADINGS: Array = np.asarray(np.arange(-180.0, 181.0, 30.0) * DEG)
 _IN_PLANE = (0, 2, 4)  # what a body of revolution is asked: surge, heave, pitch
 _SHALLOWEST = 0.14  # k h from which capytaine's water of finite depth begins
 

@@ -136,7 +136,7 @@ def _headings(step: float) -> Array:
     count = round(360.0 / step) if step > 0.0 else 0
     if not count or abs(count * step - 360.0) > 1e-6:
         raise InputError("--heading-step-deg", f"{step:g} does not divide 360", "such as 30 or 15")
-    return (np.arange(count + 1) * step - 180.0) * DEG
+    return np.asarray((np.arange(count + 1) * step - 180.0) * DEG)
 
 
 def table(base: HydroDatabase, platform: Platform | None = None) -> list[HydroRow]:

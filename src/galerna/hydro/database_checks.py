@@ -10,8 +10,8 @@ from galerna.contract import Array
 from galerna.errors import InputError
 from galerna.hydro.database import Complex, HydroDatabase
 from galerna.hydro.interpolation import refuse_failed, whole_circle
-from galerna.hydro.long_waves import group_velocity
 from galerna.hydro.rigid import MODES
+from galerna.hydro.waves.dispersion import group_velocity
 
 _ASYMMETRY = 0.05  # of the largest: coarse meshes of well-known panel codes reach 1 %
 _ACTIVE = 0.02  # largest damping below zero, over the modes' largest
@@ -168,23 +168,3 @@ def long_waves(base: HydroDatabase) -> LongWaves | None:
     mass = base.water_density * base.displaced_volume + base.added_mass[0, 0, 0]
     heave = complex(force[2] / still) if still > 0.0 else complex(np.nan)
     return LongWaves(heave, complex(force[0] / (1j * base.gravity * k * mass * ahead[m])))
-
-
-def require_cover(
-    base: HydroDatabase, frequency: Array, variance: Array, tolerance: float = 1e-3
-) -> float:
-    """The share of the sea's ``variance`` (n,) m2 above the database's last frequency.
-
-    ``frequency`` (n,) rad/s. Raises InputError where more than ``tolerance`` lies there.
-    """
-    total = float(np.sum(variance))
-    last = float(base.frequency[-1])
-    share = float(np.sum(variance[frequency > last]) / total) if total > 0.0 else 0.0
-    if share > tolerance:
-        raise InputError(
-            "hydrodynamic database",
-            f"the sea has energy ({100 * share:.2g} % of the variance) above w = {last:.4g} rad/s, "
-            f"where the database ends; the sea goes up to {frequency.max():.4g} rad/s",
-            "compute it to higher frequencies (galerna hydro), or cut the sea's spectrum there",
-        )
-    return share
