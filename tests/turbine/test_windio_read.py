@@ -317,7 +317,7 @@ def test_a_strange_key_that_resembles_none_is_noted(tmp_path: Path) -> None:
     assert any("peak_thrust_shaving" in note for note in read(tmp_path, data).notes)
 
 
-@pytest.mark.parametrize("name", ["monopile", "jacket", "floating_platform", "mooring"])
+@pytest.mark.parametrize("name", ["monopile", "jacket"])
 def test_a_foundation_that_is_not_read_is_noted(name: str, tmp_path: Path) -> None:
     data = document()
     data["components"][name] = {}

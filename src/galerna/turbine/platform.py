@@ -15,10 +15,12 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
+_UPRIGHT = 1e-6  #: sine of the lean below which an axis counts as upright
+
 
 @dataclass(frozen=True, eq=False)
 class Member:
-    """A straight member from ``start`` to ``end`` (3,) m, its outside on the fractions ``span`` (n,).
+    """A straight member from ``start`` to ``end`` (3,) m, its hull at fractions ``span`` (n,).
 
     ``sides`` (n,2) m are the diameter, twice, of a round member; of a rectangular one the
     horizontal width and the other side (of an upright member: along x and y).
@@ -39,6 +41,14 @@ class Member:
     def length(self) -> float:
         """Distance m from end to end."""
         return float(np.linalg.norm(self.end - self.start))
+
+    def axes(self) -> Array:
+        """Unit vectors (3,3) as columns: along the first side, the second side, the axis."""
+        axis = (self.end - self.start) / self.length
+        level = np.cross((0.0, 0.0, 1.0), axis)
+        upright = np.linalg.norm(level) < _UPRIGHT
+        first = np.array([1.0, 0.0, 0.0]) if upright else level / np.linalg.norm(level)
+        return np.stack([first, np.cross(axis, first), axis], axis=1)
 
 
 @dataclass(frozen=True)

@@ -13,11 +13,12 @@ from galerna.turbine.windio.blade import read_blade
 from galerna.turbine.windio.block import Block
 from galerna.turbine.windio.companion import Companion, read_companion
 from galerna.turbine.windio.control import read_control
+from galerna.turbine.windio.floating import read_platform
 from galerna.turbine.windio.schema import validate_document
 from galerna.turbine.windio.tower import read_tower
 from galerna.units import DEG
 
-_FOUNDATIONS = ("monopile", "jacket", "floating_platform", "mooring")
+_FOUNDATIONS = ("monopile", "jacket")
 _CONVERTER = (
     "convert it in Python: from windIO.converters.windIO2windIO import v1p0_to_v2p0; "
     "v1p0_to_v2p0('OLD.yaml', 'NEW.yaml').convert()"
@@ -74,7 +75,7 @@ def _turbine(document: Block, companion: Companion, notes: list[str]) -> Turbine
         tower=tower,
         control=replace(control, **extra["control"]),
         hub_height=_hub_height(document.block("assembly"), tower, nacelle, notes),
-        platform=companion.platform,
+        platform=read_platform(document, companion, tower.axis[0], notes),
         sources=companion.sources,
         published=companion.published,
         description=document.text("comments", ""),

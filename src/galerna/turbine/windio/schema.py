@@ -26,8 +26,6 @@ _NOT_READ: tuple[Keys, ...] = (
     ("components", "blade", "structure", "anchors"),
     ("components", "monopile"),
     ("components", "jacket"),
-    ("components", "floating_platform"),
-    ("components", "mooring"),
     ("outputs",),
 )
 

@@ -6,12 +6,12 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from galerna.errors import did_you_mean
 from galerna.turbine import cross_section
 from galerna.turbine.model import Array, SectionProperties, Tower
 from galerna.turbine.windio import elastic
 from galerna.turbine.windio.blade import reference_axis
 from galerna.turbine.windio.block import Block, merged_grid
+from galerna.turbine.windio.materials import material
 
 
 def read_tower(document: Block, damping_ratio: float | None, notes: list[str]) -> Tower:
@@ -72,7 +72,7 @@ def _tube(
         inner = outer - np.interp(span, *wall)
         if (inner < 0.0).any():
             raise layer.error("is thicker than the tower's radius", "", "thickness")
-        young, shear, density = _material(document, layer)
+        young, shear, density = material(document, layer)
         nu = young / (2.0 * shear) - 1.0
         area, second = np.pi * (outer**2 - inner**2), np.pi / 4.0 * (outer**4 - inner**4)
         transverse = 2.0 * (1.0 + nu) / (4.0 + 3.0 * nu) * shear * area
@@ -87,19 +87,6 @@ def _tube(
     if (inertia[:, 0, 0] <= 0.0).any():
         raise structure.error("the layers leave a place without a wall", "", "layers")
     return span, stiffness, inertia
-
-
-def _material(document: Block, layer: Block) -> tuple[float, float, float]:
-    """Young's modulus Pa, shear modulus Pa, density kg/m3 of an isotropic layer."""
-    name = layer.text("material")
-    materials = {block.text("name"): block for block in document.blocks("materials")}
-    if name not in materials:
-        raise layer.error(f"unknown material {name!r}", did_you_mean(name, materials), "material")
-    block = materials[name]
-    tiny = float(np.finfo(float).tiny)
-    young, density = block.number("E", low=tiny), block.number("rho", low=tiny)
-    default = young / (2.0 * (1.0 + block.number("nu", 0.3, -0.99, 0.5)))
-    return young, block.number("G", default, tiny), density
 
 
 def _point_masses(tower: Block, axis_span: Array, axis: Array) -> tuple[tuple[float, float], ...]:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from galerna.turbine.model import Airfoil, Array, Blade, Control, Polar, Tower, Turbine
-from galerna.turbine.windio import elastic
+from galerna.turbine.windio import elastic, floating_out
 from galerna.turbine.windio.companion import PROPERTIES, companion_path
 from galerna.turbine.windio.emit import to_yaml
 from galerna.turbine.windio.schema import validate_document
@@ -28,10 +28,10 @@ def write(turbine: Turbine, path: str | Path) -> None:
     Raises InputError, and writes nothing, if windIO's schema cannot hold the turbine.
     """
     path = Path(path)
-    document = _document(turbine)
+    document, companion = _document(turbine), _companion(turbine, path.parent)
     validate_document(Document(path, document))
     path.write_text(to_yaml(document), encoding="utf-8")
-    companion_path(path).write_text(to_yaml(_companion(turbine)), encoding="utf-8")
+    companion_path(path).write_text(to_yaml(companion), encoding="utf-8")
 
 
 def _document(turbine: Turbine) -> dict[str, Any]:
@@ -46,10 +46,17 @@ def _document(turbine: Turbine) -> dict[str, Any]:
             "drivetrain": _drivetrain(turbine),
             "yaw": {"elastic_properties": _rigid_body(turbine.nacelle.yaw_bearing_mass)},
             "tower": _tower(turbine.tower),
-        },
+        }
+        | _floating(turbine),
         "airfoils": [_airfoil(airfoil) for airfoil in turbine.airfoils.values()],
         "control": _control(turbine.control, turbine.drivetrain.gear_ratio),
     }
+
+
+def _floating(turbine: Turbine) -> dict[str, Any]:
+    if turbine.platform is None:
+        return {}
+    return floating_out.components(turbine.platform, turbine.tower.axis[0])
 
 
 def _assembly(turbine: Turbine) -> dict[str, Any]:
@@ -250,7 +257,7 @@ def _control(control: Control, gear_ratio: float) -> dict[str, Any]:
     return document
 
 
-def _companion(turbine: Turbine) -> dict[str, Any]:
+def _companion(turbine: Turbine, folder: Path) -> dict[str, Any]:
     parts = {
         "blade": turbine.blade.structure,
         "tower": turbine.tower.structure,
@@ -266,6 +273,11 @@ def _companion(turbine: Turbine) -> dict[str, Any]:
     for name, part in parts.items():
         values = {key: getattr(part, key, None) for key in PROPERTIES[name]}
         given = {key: value for key, value in values.items() if value is not None}
+        given.pop("additional_damping", None)  # a matrix, that floating_out turns into a row
         if any(np.any(value) for value in given.values()):
             document[name] = given
+    if turbine.platform is not None:
+        beside = floating_out.companion(turbine.platform, folder)
+        document["platform"] |= beside.pop("platform")
+        document |= beside
     return document
