@@ -90,7 +90,10 @@ def moving_machine(
 ) -> FlexibleMachine:
     """The structure of a case, as it was described; ``Trim.start`` sets it in motion."""
     options = case.case.structure or StructureOptions.rigid()
-    scheme = Scheme.generalized_alpha(options.rho_inf)
+    newmark = options.alpha_n
+    scheme = (
+        Scheme.generalized_alpha(options.rho_inf) if newmark is None else Scheme.newmark(newmark)
+    )
     outputs = case.case.outputs
     gauges = Gauges(outputs.blade_stations, outputs.tower_stations)
     return FlexibleMachine(

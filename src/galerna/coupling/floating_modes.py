@@ -1,4 +1,4 @@
-"""Natural frequencies of a machine afloat, with the added mass and damping of each frequency."""
+"""A machine afloat, linear: natural frequencies, and the answer to waves, frequency by frequency."""
 
 from __future__ import annotations
 
@@ -6,12 +6,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.sparse.linalg import splu
 
 from galerna.contract import Array, Loads
 from galerna.coupling.flexible import FlexibleMachine
 from galerna.coupling.floating import ARM, DIRECTIONS
-from galerna.hydro.database import HydroDatabase
-from galerna.structure.modes import natural_modes
+from galerna.hydro.database import Complex, HydroDatabase
+from galerna.structure.modes import linearise, natural_modes
 from galerna.structure.system import Forces, State
 
 PASSES = 4  #: of a frequency and the coefficients at it
@@ -47,6 +48,30 @@ def floating_modes(
     return sorted(found, key=lambda mode: mode.frequency)
 
 
+def response(
+    machine: FlexibleMachine,
+    state: State,
+    loads: Sequence[Loads],
+    database: HydroDatabase,
+    frequency: float,
+    excitation: Complex,
+) -> Complex:
+    """Linear answer (n,6) of all frames, in their own axes, to Re[excitation exp(i w t)].
+
+    ``excitation`` (6,) N, N m acts on the platform at ``frequency`` rad/s; see ``floating_modes``.
+    """
+    node = int(machine.parts.parts["platform"][0])
+    forces = _at(machine.forces(loads), node, database, frequency)
+    linear = linearise(machine.system, state, forces)
+    s = 1j * frequency
+    matrix = s**2 * linear.mass + s * linear.damping + linear.stiffness
+    right = np.zeros(matrix.shape[0], dtype=complex)
+    turned = excitation.reshape(2, 3) @ state.rotation[node]
+    right[6 * (node - 1) : 6 * node] = turned.ravel()
+    found = splu(matrix.tocsc()).solve(right)[: linear.motions].reshape(-1, 6)
+    return np.concatenate([np.zeros((1, 6)), found])
+
+
 def _first_guesses(
     machine: FlexibleMachine, state: State, forces: Forces, node: int
 ) -> Iterator[tuple[int, float]]:
@@ -78,7 +103,7 @@ def _direction(shape: Array, node: int) -> tuple[int, float]:
 
 def _at(base: Forces, node: int, database: HydroDatabase, frequency: float) -> Forces:
     """Tangents with the coefficients of a frequency rad/s in place of the infinite one's."""
-    added, damping = database.at(frequency)
+    added, damping = (found[0] for found in database.coefficients_at([frequency]))
     assert base.mass is not None
     assert base.damping is not None
     mass, loss = base.mass.copy(), base.damping.copy()

@@ -39,6 +39,11 @@ class StructureOptions(BaseModel):
         description="Spectral radius of the time integration at infinite frequency: 1 damps "
         "nothing, 0 damps what is faster than the step at once.",
     )
+    alpha_n: Annotated[float, Field(gt=0.0, le=0.5)] | None = Field(
+        None,
+        description="Newmark-beta with this dissipation, of first order, in place of "
+        "generalized-alpha: the dissertation's scheme.",
+    )
 
     @classmethod
     def rigid(cls) -> StructureOptions:

@@ -1,0 +1,169 @@
+"""The machine afloat: pace of the demonstration, what the water costs, long seas, memory."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+import galerna
+from galerna.case import load
+from galerna.contract import Loads, Motion
+from galerna.machine import Machine, build_machine
+from galerna.simulation import Simulation
+
+from .framework import Benchmark, Figure
+from .machine import march, timed
+
+DEMO = Path(__file__).parents[1] / "examples" / "demo.yaml"
+DURATION, REPEATS = 20.0, 3  #: simulated s of one timing
+WATER = ("hydrodynamics", "drag", "mooring")
+OPENFAST = 1.0 / 0.74  #: times real time, v5.0.0, linear modes, 0.025 s, on a machine of this kind
+
+LATTICE: dict[str, Any] = {
+    "galerna": 1,
+    "turbine": "nrel5mw_oc3",
+    "duration_s": 10.0,
+    "time_step_s": 0.055,
+    "inflow": {"wind_speed_m_s": 11.4},
+    "aerodynamics": {
+        "model": "vortex_lattice",
+        "wake": "prescribed",
+    },
+    "structure": "flexible",
+    "control": "baseline",
+    "sea": {"waves": {"kind": "jonswap", "significant_height_m": 6.0, "peak_period_s": 10.0}},
+}
+SHARPY = 400.0  #: CPU s per simulated s: SHARPy 2.4, 1248 bound and 3822 wake panels, 0.055 s
+SHARPY_WANTED = 200.0  #: times faster
+
+
+class Watch:
+    """CPU seconds in the calls of a machine's water loads."""
+
+    def __init__(self, machine: Machine) -> None:
+        self.spent = 0.0
+        for name in WATER:
+            model = machine.simulation.load_models.get(name)
+            if model is None:
+                continue
+            for call in ("begin_step", "loads", "end_step"):
+                setattr(model, call, self._watched(getattr(model, call)))
+
+    def _watched(self, call: Any) -> Any:
+        def timed_call(*arguments: float | Motion) -> Loads | None:
+            start = time.perf_counter()
+            answer = call(*arguments)
+            self.spent += time.perf_counter() - start
+            return answer
+
+        return timed_call
+
+
+def pace() -> Sequence[Figure]:
+    """Real-time factor of the demonstration on one core, and the water's share of it."""
+    machine = build_machine(load(DEMO))
+    simulation = machine.simulation
+    march(simulation, 2.0)
+    factors = [DURATION / timed(simulation, DURATION) for _ in range(REPEATS)]
+    watch = Watch(machine)
+    rebuilt = Simulation(
+        simulation.structure, simulation.load_models, simulation.time_step,
+        commander=simulation.commander, probes=simulation.probes,
+    )  # fmt: skip
+    rebuilt.steps = simulation.steps
+    spent = timed(rebuilt, DURATION)
+    name = "OC3 spar, flexible, controlled, wind and waves, 0.02 s step, one core"
+    return (
+        Figure(f"{name}: real-time factor", median(factors), "x", 3.0, True),
+        Figure("the same: OpenFAST with linear modes, 0.025 s, measured elsewhere", OPENFAST, "x"),
+        Figure("radiation, waves, drag and moorings: share of the time", watch.spent / spent, "-",
+               0.10),
+    )  # fmt: skip
+
+
+def long_seas() -> Sequence[Figure]:
+    """Time of the water's loads in a step for ten minutes and for an hour of waves."""
+    figures = []
+    costs = {}
+    for minutes in (10, 60):
+        case = {
+            **{key: value for key, value in LATTICE.items() if key != "aerodynamics"},
+            "structure": "rigid",
+            "duration_s": 60.0 * minutes,
+            "time_step_s": 0.02,
+        }
+        machine = build_machine(load(case))
+        march(machine.simulation, 2.0)
+        watch = Watch(machine)
+        simulation = machine.simulation
+        rebuilt = Simulation(
+            simulation.structure, simulation.load_models, simulation.time_step,
+            commander=simulation.commander, probes=simulation.probes,
+        )  # fmt: skip
+        rebuilt.steps = simulation.steps
+        march(rebuilt, DURATION)
+        costs[minutes] = 1e6 * watch.spent / (DURATION / 0.02)
+        assert machine.afloat is not None
+        count = len(machine.afloat.sea.frequency)
+        what = f"water's loads in a step, sea of {minutes} min, {count} frequencies"
+        figures.append(Figure(what, costs[minutes], "us"))
+    figures.append(Figure("an hour's over ten minutes'", costs[60] / costs[10], "-", 1.15))
+    return figures
+
+
+MEMORY = """
+import json, resource, sys
+import galerna
+galerna.run(json.loads(sys.argv[1]), sys.argv[2], overwrite=True)
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024.0)
+"""
+
+
+def memory() -> Sequence[Figure]:
+    """Peak memory of an hour in turbulence and waves, streamed to disk; blades rigid."""
+    from tempfile import TemporaryDirectory
+
+    case = {
+        **{key: value for key, value in LATTICE.items() if key != "aerodynamics"},
+        "duration_s": 3600.0,
+        "time_step_s": 0.1,
+        "inflow": {"wind_speed_m_s": 18.0, "turbulence": {"kind": "mann", "turbulence_class": "B"}},
+        "structure": "rigid",
+    }
+    with TemporaryDirectory() as folder:
+        done = subprocess.run(
+            [sys.executable, "-c", MEMORY, json.dumps(case), f"{folder}/hour.nc"],
+            capture_output=True, text=True, check=True,
+        )  # fmt: skip
+    peak = float(done.stdout.split()[-1])
+    return (Figure("peak memory of an hour in turbulence and waves", peak / 1024.0, "GB", 1.0),)
+
+
+def lattice() -> Sequence[Figure]:
+    """CPU time of a simulated second with the vortex lattice and a prescribed wake."""
+    machine = build_machine(galerna.load_case(LATTICE))
+    simulation = machine.simulation
+    march(simulation, 1.0)
+    spent = timed(simulation, 5.0) / 5.0
+    model = machine.vortex_lattice
+    assert model is not None
+    return (
+        Figure(f"OC3 spar, flexible, lattice, {model.wake_panels} wake panels: CPU s a second",
+               spent, "s"),
+        Figure("times faster than SHARPy, measured elsewhere", SHARPY / spent, "x",
+               SHARPY_WANTED, True),
+    )  # fmt: skip
+
+
+BENCHMARKS = (
+    Benchmark("afloat-pace", "afloat", "The demonstration: OC3 spar in wind and waves", pace),
+    Benchmark("afloat-sea", "afloat", "Long seas", long_seas),
+    Benchmark("afloat-memory", "afloat", "Memory of an hour", memory),
+    Benchmark("afloat-lattice", "afloat", "Lattice afloat beside SHARPy", lattice),
+)
