@@ -20,9 +20,9 @@ from galerna.contract import Array
 from galerna.errors import InputError
 from galerna.hydro.database import Complex, HydroDatabase
 from galerna.hydro.far_field import ANGLES, FarField, Moving, Surface, kochin, mean_drift
+from galerna.hydro.long_waves import wavenumber
 from galerna.hydro.panels import Panels, displacement
 from galerna.hydro.rigid import MODES, turn
-from galerna.hydro.waves.dispersion import wavenumber
 from galerna.units import DEG
 
 HEADINGS: Array = np.asarray(np.arange(-180.0, 181.0, 30.0) * DEG)
@@ -90,8 +90,9 @@ def compute(
     follows by turning. ``moving`` gives the mean drift of the moving hull, without it that of
     a held one. ``progress`` is told how many of all frequencies are done. Frequencies that
     fail become NaN, with one warning. Zero frequency comes with infinite depth alone: in
-    finite depth heave's added mass has no limit there, it grows with -log(k h). Raises InputError where capytaine is missing, for
-    frequencies below what it can do in this depth, and where all fail.
+    finite depth heave's added mass has no limit there, it grows with -log(k h). Raises
+    InputError where capytaine is missing, for frequencies below what it can do in this depth,
+    and where all fail.
     """
     frequency = np.asarray(frequencies, dtype=float)
     asked, reference = np.asarray(headings, float), np.asarray(reference_point, float)
