@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -69,7 +69,7 @@ def compute_database(
         raise InputError("platform.water_depth", "is not given", "give the depth of the water in m")
     panels = _panels(platform, panel_size, sectors, mesh)
     _check_draft(panels, depth)
-    return compute(
+    base = compute(
         panels,
         default_frequencies() if frequencies is None else frequencies,
         headings,
@@ -78,6 +78,7 @@ def compute_database(
         moving=rigid_machine(turbine),
         progress=progress,
     )
+    return replace(base, settings={"hull": turbine.name, **base.settings})
 
 
 def _panels(platform: Platform, size: float, sectors: int, mesh: Mesh | None) -> Panels:
