@@ -20,9 +20,9 @@ from galerna.contract import Array
 from galerna.errors import InputError
 from galerna.hydro.database import Complex, HydroDatabase
 from galerna.hydro.far_field import ANGLES, FarField, Moving, Surface, kochin, mean_drift
-from galerna.hydro.long_waves import wavenumber
 from galerna.hydro.panels import Panels, displacement
 from galerna.hydro.rigid import MODES, turn
+from galerna.hydro.waves.dispersion import wavenumber
 from galerna.units import DEG
 
 HEADINGS: Array = np.asarray(np.arange(-180.0, 181.0, 30.0) * DEG)

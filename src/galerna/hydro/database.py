@@ -10,8 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from galerna.contract import Array
 from galerna.hydro.interpolation import curve_weights, heading_weights, whole_circle
-from galerna.hydro.long_waves import wavenumber
 from galerna.hydro.rigid import constant_force_stiffness, shift, turn
+from galerna.hydro.waves.dispersion import wavenumber
 
 Complex = NDArray[np.complex128]
 

@@ -10,8 +10,8 @@ from galerna.contract import Array
 from galerna.errors import InputError
 from galerna.hydro.database import Complex, HydroDatabase
 from galerna.hydro.interpolation import refuse_failed, whole_circle
-from galerna.hydro.long_waves import group_velocity
 from galerna.hydro.rigid import MODES
+from galerna.hydro.waves.dispersion import group_velocity
 
 _ASYMMETRY = 0.05  # of the largest: coarse meshes of well-known panel codes reach 1 %
 _ACTIVE = 0.02  # largest damping below zero, over the modes' largest

@@ -59,8 +59,20 @@ def check_units(base: HydroDatabase, files: Mapping[str, Path], column: str) -> 
     """Lengths, masses and frequencies belong together. Raises InputError with the figures."""
     _check_stiffness(base, files[".hst"])
     _check_mass(base, files[".1"])
-    _check_long_waves(base, files)
-    _check_frequency(base, files[".1"], column)
+    ratio = haskind_ratio(base)
+    fits = ratio is None or 0.5 < ratio < 2.0
+    better = [] if fits else [name for name, w in _readings(base, column).items() if _fits(base, w)]
+    if not better:  # the excitation's own units come first
+        _check_long_waves(base, files)
+    if not fits:
+        hint = f"read it with first_column={better[0]!r}" if better else "look at its units"
+        raise InputError(
+            str(files[".1"]),
+            f"damping is {ratio:.3g} times that of the waves which the excitation implies, with "
+            f"the first column as {column} ({base.frequency[0]:.4g} to {base.frequency[-1]:.4g} "
+            "rad/s)",
+            hint,
+        )
 
 
 def _check_stiffness(base: HydroDatabase, path: Path) -> None:
@@ -110,21 +122,6 @@ def _check_long_waves(base: HydroDatabase, files: Mapping[str, Path]) -> None:
                 f"{abs(ratio):.4g} times what it must be",
                 "look at ULEN and at which of the files are dimensional",
             )
-
-
-def _check_frequency(base: HydroDatabase, path: Path, column: str) -> None:
-    """Damping is that of the waves which the excitation implies (Haskind), if w is right."""
-    ratio = haskind_ratio(base)
-    if ratio is None or 0.5 < ratio < 2.0:
-        return
-    better = [name for name, w in _readings(base, column).items() if _fits(base, w)]
-    hint = f"read it with first_column={better[0]!r}" if better else "look at its units"
-    raise InputError(
-        str(path),
-        f"damping is {ratio:.3g} times that of the waves which the excitation implies, with the "
-        f"first column as {column} ({base.frequency[0]:.4g} to {base.frequency[-1]:.4g} rad/s)",
-        hint,
-    )
 
 
 def _readings(base: HydroDatabase, column: str) -> dict[str, Array]:
