@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
-from galerna.case import LoadedCase
-from galerna.contract import Array, LoadModel
+import numpy as np
+
+from galerna.case import Case, LoadedCase
+from galerna.contract import Array, LoadModel, Stations
 from galerna.coupling.equilibrium import SteadyMachine
 from galerna.coupling.floating import (
+    DIRECTIONS,
     PASSES,
     SETTLED,
     Burden,
@@ -15,10 +19,26 @@ from galerna.coupling.floating import (
     WaterAtRest,
     burden_of,
 )
-from galerna.errors import ConvergenceError
-from galerna.simulation import Probe
+from galerna.errors import ConvergenceError, InputError
+from galerna.hydro.database import HydroDatabase
+from galerna.hydro.drag import ViscousDrag
+from galerna.hydro.files import read_database
+from galerna.hydro.hull import build_hull
+from galerna.hydro.hydrostatics import NonlinearBuoyancy
+from galerna.hydro.mooring import mooring_loads
+from galerna.hydro.platform_options import PlatformOptions
+from galerna.hydro.potential_flow import PotentialFlow
+from galerna.hydro.sea_options import SeaOptions
+from galerna.hydro.strips import Carrier
+from galerna.hydro.waves import Sea, WaveProbe, build_sea
+from galerna.structure.foundation import DOWNWARDS, Spar
 from galerna.structure.frames import roll_pitch_yaw, turned_by
-from galerna.turbine.model import Turbine
+from galerna.turbine.model import Tower, Turbine
+from galerna.turbine.platform import Platform
+from galerna.units import DEG, STANDARD_GRAVITY
+
+SAME_DEPTH = 0.05  #: of the depth, by which database and sea may differ
+DEEP = 200.0  #: m: waves of 20 s and less do not feel the ground
 
 
 @dataclass(eq=False)
@@ -68,11 +88,160 @@ class Afloat:
     ``floating`` is None where the platform is moved as is prescribed.
     """
 
+    sea: Sea
+    database: HydroDatabase
     models: dict[str, LoadModel]
-    probe: Probe
+    probe: WaveProbe
     floating: Floating | None
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What was made of sea and coefficients, a line each."""
+        return (*self.sea.notes, *_of_models(self.models, "notes"))
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What is in doubt about them."""
+        return (*self.sea.warnings, *_of_models(self.models, "warnings"))
 
 
 def build_water(case: LoadedCase, turbine: Turbine) -> Afloat:
-    """The water of a case that has a sea."""
-    raise NotImplementedError
+    """The water of a case that has a sea.
+
+    Raises InputError, with the line of the key, for what cannot be: waves that break, a database
+    that lacks what they need, lines that cannot reach.
+    """
+    settings = case.case
+    options = settings.platform or PlatformOptions()
+    assert settings.sea is not None, "the case has no sea"
+    with case.blame("sea"):
+        platform = _platform_of(turbine, settings.sea.water_depth_m)
+        sea = build_sea(
+            settings.sea,
+            settings.duration_s,
+            settings.seed,
+            platform.water_depth,
+            _gravity(settings),
+            case.folder,
+            time_step=settings.time_step_s,
+        )
+    with case.blame("platform"):
+        database = _database(case, turbine, platform, options, sea)
+        carrier = carrier_of(platform, turbine.tower, options)
+        models = _models(platform, database, sea, options, settings.sea, carrier)
+        floating = _floating(settings, platform, models, options)
+    return Afloat(sea, database, models, WaveProbe(sea, platform.reference_point[:2]), floating)
+
+
+def _platform_of(turbine: Turbine, depth: float | None) -> Platform:
+    """The platform of a turbine in water of a depth m; InputError where there is none."""
+    platform = turbine.platform
+    if platform is None:
+        what = f"{turbine.name!r} stands on the ground: it has no platform that floats"
+        raise InputError("sea", what, "leave the sea out, or take nrel5mw_oc3")
+    return platform if depth is None else replace(platform, water_depth=depth)
+
+
+def _gravity(settings: Case) -> float:
+    structure = settings.structure
+    return STANDARD_GRAVITY if structure is None else structure.gravity_m_s2
+
+
+def _database(
+    case: LoadedCase, turbine: Turbine, platform: Platform, options: PlatformOptions, sea: Sea
+) -> HydroDatabase:
+    """The coefficients that a case names, or its turbine, for water like the sea's."""
+    given = options.hydrodynamics_file
+    path = platform.hydrodynamics if given is None else case.folder / given
+    if path is None or not path.is_file():
+        what = f"{turbine.name!r} has no file of hydrodynamic coefficients"
+        if path is not None:
+            what = f"the file of hydrodynamic coefficients {path} is not there"
+        hint = "make one with `galerna hydro` and name it in hydrodynamics_file"
+        raise InputError("hydrodynamics_file", what, hint)
+    return like_the_sea(read_database(path, platform), sea)
+
+
+def like_the_sea(base: HydroDatabase, sea: Sea) -> HydroDatabase:
+    """Coefficients for the sea's density; InputError where depth or gravity are others.
+
+    All of them are proportional to the density. A depth may differ where both are deep for the
+    waves of the lowest frequency, or by a twentieth.
+    """
+    if abs(base.gravity / sea.gravity - 1.0) > 1e-3:
+        what = f"its gravity is {base.gravity:g} m/s2, the case's {sea.gravity:g} m/s2"
+        raise InputError("hydrodynamics_file", what, "give the same to both")
+    shallow = min(base.water_depth, sea.depth)
+    if abs(base.water_depth - sea.depth) > SAME_DEPTH * shallow and shallow < DEEP:
+        what = f"it is for {base.water_depth:g} m of water, the sea has {sea.depth:g} m"
+        raise InputError("hydrodynamics_file", what, "compute it for this depth (galerna hydro)")
+    factor = sea.density / base.water_density
+    return base if factor == 1.0 else scaled(base, factor)
+
+
+def scaled(base: HydroDatabase, factor: float) -> HydroDatabase:
+    """Coefficients in water of ``factor`` times the density."""
+    names = ("added_mass", "damping", "added_mass_infinite", "excitation", "hydrostatic_stiffness")
+    changed: dict[str, Any] = {name: factor * getattr(base, name) for name in names}
+    for name in ("added_mass_zero", "mean_drift"):
+        value = getattr(base, name)
+        changed[name] = None if value is None else factor * value
+    return replace(base, water_density=factor * base.water_density, **changed)
+
+
+def _models(
+    platform: Platform,
+    database: HydroDatabase,
+    sea: Sea,
+    options: PlatformOptions,
+    of_sea: SeaOptions,
+    carrier: Carrier,
+) -> dict[str, LoadModel]:
+    """The loads of the water and the lines, by name."""
+    buoyancy = None
+    if options.hydrostatics == "nonlinear":
+        hull = build_hull(platform.members)
+        buoyancy = NonlinearBuoyancy(hull, platform.reference_point, sea.density, sea.gravity)
+    models: dict[str, LoadModel] = {
+        "hydrodynamics": PotentialFlow(platform, database, sea, options, buoyancy=buoyancy)
+    }
+    if of_sea.drag:
+        models["drag"] = ViscousDrag(platform, sea, stretching=of_sea.stretching, carrier=carrier)
+    if platform.mooring is not None and options.mooring != "none":
+        models["mooring"] = mooring_loads(platform, sea, options.mooring, carrier=carrier)
+    return models
+
+
+def carrier_of(platform: Platform, tower: Tower, options: PlatformOptions) -> Carrier:
+    """The frames on which drag and lines act: the platform's, or those of a flexible spar.
+
+    The keel's frame is left out: loads with tangents stand at an element's first end.
+    """
+    if options.model != "flexible_spar":
+        return Carrier.rigid(platform)
+    span = Spar.of(platform, tower, options.model).span[:-1]
+    depth = platform.draft * np.outer(span, [0.0, 0.0, 1.0])
+    axes = np.tile(DOWNWARDS, (len(span), 1, 1))
+    return Carrier(Stations("spar", span), np.array(platform.reference_point) - depth, axes)
+
+
+def _floating(
+    settings: Case, platform: Platform, models: dict[str, LoadModel], options: PlatformOptions
+) -> Floating | None:
+    """The platform that floats; None where it is moved."""
+    start = options.start
+    displaced = np.array([start.surge_m, start.sway_m, start.heave_m])
+    turned = DEG * np.array([start.roll_deg, start.pitch_deg, start.yaw_deg])
+    by = np.concatenate([displaced, turned])
+    if settings.base_motion is not None:
+        if options.locked or by.any():
+            what = "locked and start are of a platform that floats; base_motion moves this one"
+            raise InputError("platform", what, "leave one of them out")
+        return None
+    locked = tuple(DIRECTIONS.index(name) for name in options.locked)
+    place = np.array(platform.reference_point, dtype=float)
+    return Floating(WaterAtRest(models, locked, place), Pose(place.copy(), np.eye(3)), by)
+
+
+def _of_models(models: dict[str, LoadModel], name: str) -> tuple[str, ...]:
+    return tuple(line for model in models.values() for line in getattr(model, name, ()))

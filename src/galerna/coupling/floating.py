@@ -69,10 +69,17 @@ class WaterAtRest:
     """The loads of water and moorings on a platform at rest, by the names of their models.
 
     It is free to move but for the ``locked`` directions: 0 to 2 along, 3 to 5 about the axes.
+    ``place`` (3,) m is where its reference point stood as it was described.
     """
 
-    def __init__(self, models: Mapping[str, LoadModel], locked: tuple[int, ...] = ()) -> None:
+    def __init__(
+        self,
+        models: Mapping[str, LoadModel],
+        locked: tuple[int, ...] = (),
+        place: Array | None = None,
+    ) -> None:
         self.models, self.locked = models, locked
+        self.place = Pose(np.zeros(3) if place is None else place, np.eye(3))
         self._free = np.array([k for k in range(6) if k not in locked], dtype=np.int64)
 
     def loads(self, pose: Pose) -> dict[str, Loads]:

@@ -1,4 +1,4 @@
-"""A machine afloat, linear: natural frequencies, and the answer to waves, frequency by frequency."""
+"""A machine afloat, linear: natural frequencies, and the answer to waves of a frequency."""
 
 from __future__ import annotations
 

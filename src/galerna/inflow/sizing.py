@@ -25,7 +25,8 @@ class RotorExtent:
 
     ``reach`` is the largest distance of a blade tip from the tower axis at hub height,
     ``upstream`` how far the rotor stands before that axis, ``margin`` is kept free on
-    every side, and ``lowest`` is the lowest height asked for (the tower's foot).
+    every side, and ``lowest`` is the lowest height asked for (the tower's foot, less the
+    margin where it floats).
     """
 
     hub_height: float
@@ -44,7 +45,8 @@ class RotorExtent:
         radius = turbine.rotor_radius
         if margin is None:
             margin = radius * (MARGIN_AFLOAT if turbine.platform else MARGIN_ON_LAND)
-        lowest = max(0.0, float(turbine.tower.axis[:, 2].min()))
+        foot = float(turbine.tower.axis[:, 2].min())
+        lowest = max(0.0, foot - (margin if turbine.platform else 0.0))
         reach = math.hypot(radius, upstream)
         return cls(turbine.hub_height, radius, reach, upstream, margin, lowest)
 

@@ -28,6 +28,7 @@ from .joints import ALL, Joint, Path
 PlatformModel = Literal["rigid", "concentrated_spar", "flexible_spar"]
 FOOT_MASS = 1.0  #: kg and kg m2, of a foot that is moved
 STIFFER = 100.0  #: times the tower's foot: a spar, by the dissertation
+DOWNWARDS = rotation_about(1, np.pi)  #: axes of a spar's beam, z to the keel
 BASE_ELEMENTS = 2  #: between still water and the tower
 LONGEST_ELEMENT = 10.0  #: m, of a flexible spar
 
@@ -105,6 +106,11 @@ class Spar:
     tower_stiffness: Array
     ballast: float = 0.0
     ballast_depth: float = 0.0
+
+    @property
+    def span(self) -> Array:
+        """Fractions (k,) at which the beam below has nodes: its ends, the ballast, and between."""
+        return np.unique(np.concatenate(list(_spans(self))))
 
     @classmethod
     def of(cls, platform: Platform, tower: Tower, model: PlatformModel) -> Spar:
@@ -190,16 +196,19 @@ def _add_spar(structure: Structure, spar: Spar, place: Array) -> tuple[str, dict
     names = structure.beam("base", base, root="platform")
     if not spar.below:
         return names[-1], {}
-    axes = rotation_about(1, np.pi)
-    depths = spar.below * np.unique(np.concatenate(list(_spans(spar))))
+    axes = DOWNWARDS
+    span = spar.span
     below = discretise(
-        straight(place, axes, spar.below), spar.below, uniform(spar.stiffness, inertia),
-        depths / spar.below, "spar",
-    )  # fmt: skip
+        straight(place, axes, spar.below),
+        spar.below,
+        uniform(spar.stiffness, inertia),
+        span,
+        "spar",
+    )
     frames = structure.beam("spar", below, root="platform")
-    at = frames[int(np.argmin(np.abs(depths - spar.ballast_depth)))]
+    at = frames[int(np.argmin(np.abs(span * spar.below - spar.ballast_depth)))]
     structure.add_mass(at, rigid_body(spar.ballast))
-    return names[-1], {"spar": Part(frames, depths / spar.below, place, axes)}
+    return names[-1], {"spar": Part(frames, span, place, axes)}
 
 
 def _spans(spar: Spar) -> Iterator[Array]:
