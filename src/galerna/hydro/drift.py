@@ -15,14 +15,16 @@ from galerna.contract import Array
 from galerna.errors import InputError
 from galerna.hydro.database import HydroDatabase
 
-from .excitation import Series, Waves, covered
+from .excitation import covered
 from .heading import Bins
+from .waves.sea import Sea
+from .waves.series import Series, growth
 
 
 class _Drift:
     """Drift coefficients of the waves of a sea, by heading. InputError without any."""
 
-    def __init__(self, database: HydroDatabase, sea: Waves) -> None:
+    def __init__(self, database: HydroDatabase, sea: Sea) -> None:
         if database.mean_drift is None:
             what = "the hydrodynamic database holds no mean drift coefficients"
             hint = "compute them (galerna hydro), or say `drift: none`"
@@ -61,7 +63,7 @@ class MeanDrift(_Drift):
 class SlowDrift(_Drift):
     """Mean and slow drift. As long as waves grow at the start, the mean stands in for them."""
 
-    def __init__(self, database: HydroDatabase, sea: Waves) -> None:
+    def __init__(self, database: HydroDatabase, sea: Sea) -> None:
         super().__init__(database, sea)
         self._bins = Bins(self._series)
         self._bins.around(0.0)
@@ -70,13 +72,14 @@ class SlowDrift(_Drift):
         """Real, then imaginary parts of the signals of D > 0 and of D < 0."""
         D = self.coefficients(heading)
         roots = np.sqrt(np.hstack([np.maximum(D, 0.0), np.maximum(-D, 0.0)]))
-        return self.sea.series(np.hstack([roots, -1j * roots]))
+        here = self.sea.spread(self.database.reference_point[:2])
+        return self.sea.series(np.hstack([roots, -1j * roots]) * here)
 
     def at(self, time: float, heading: float) -> Array:
         """Force (6,) N, N m at a time s and a heading rad, in its axes."""
         below, above, share = self._bins.around(heading)
         slow = (1.0 - share) * _product(below, time) + share * _product(above, time)
-        return slow + (1.0 - self.sea.growth(time) ** 2) * self.mean(heading)
+        return slow + (1.0 - growth(time, self.sea.ramp) ** 2) * self.mean(heading)
 
 
 def _product(series: Series, time: float) -> Array:

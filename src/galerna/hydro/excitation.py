@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from typing import Protocol
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,35 +10,13 @@ from galerna.errors import InputError
 from galerna.hydro.database import Complex, HydroDatabase
 
 from .heading import Bins
+from .waves.sea import Sea
+from .waves.series import Series
 
 LEFT_OUT = 1e-3  #: of the elevation's variance, at most, may lie above a database's frequencies
 
 
-class Series(Protocol):
-    """Sums over all waves of a sea, at a time."""
-
-    def at(self, time: float) -> Array: ...
-
-
-class Waves(Protocol):
-    """n waves, the elevation Re[sum a exp(i w t)] at the reference point's place.
-
-    ``frequency`` (n,) rad/s, ``direction`` (n,) rad, ``amplitude`` (n,) m, complex. ``series`` of a
-    transfer function (n,k) gives Re[sum a H exp(i w t)] (k,) in time, times the ``growth`` from 0
-    to 1 at the start.
-    """
-
-    @property
-    def frequency(self) -> Array: ...
-    @property
-    def direction(self) -> Array: ...
-    @property
-    def amplitude(self) -> Complex: ...
-    def series(self, transfer: Complex) -> Series: ...
-    def growth(self, time: float) -> float: ...
-
-
-def covered(database: HydroDatabase, sea: Waves) -> NDArray[np.bool_]:
+def covered(database: HydroDatabase, sea: Sea) -> NDArray[np.bool_]:
     """Which waves (n,) the database's frequencies reach.
 
     Raises InputError with the figures where more of the variance lies above them than may.
@@ -62,7 +38,7 @@ def covered(database: HydroDatabase, sea: Waves) -> NDArray[np.bool_]:
 class WaveExcitation:
     """Force (6,) of the waves in axes of the platform's heading, between ready-made headings."""
 
-    def __init__(self, database: HydroDatabase, sea: Waves) -> None:
+    def __init__(self, database: HydroDatabase, sea: Sea) -> None:
         self.database, self.sea = database, sea
         self._inside = covered(database, sea)
         self._bins = Bins(self._series)
@@ -73,7 +49,7 @@ class WaveExcitation:
         found = np.zeros((len(self.sea.frequency), 6), dtype=complex)
         w, towards = self.sea.frequency[self._inside], self.sea.direction[self._inside]
         found[self._inside] = self.database.excitation_at(w, towards - heading)
-        return found
+        return found * self.sea.spread(self.database.reference_point[:2])
 
     def _series(self, heading: float) -> Series:
         return self.sea.series(self.transfer(heading))

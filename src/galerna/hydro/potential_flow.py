@@ -13,7 +13,7 @@ potential flow has none.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import cos, inf, sin
+from math import cos, inf, nan, sin
 from typing import Protocol
 
 import numpy as np
@@ -24,7 +24,7 @@ from galerna.hydro.platform_options import PlatformOptions
 from galerna.turbine.platform import Platform
 
 from .drift import MeanDrift, SlowDrift
-from .excitation import WaveExcitation, Waves
+from .excitation import WaveExcitation
 from .heading import MeanHeading
 from .platform_sum import PARTS, add_up, channels_of
 from .radiation import (
@@ -35,6 +35,7 @@ from .radiation import (
     StateSpaceMemory,
     fit_radiation,
 )
+from .waves.sea import Sea
 
 
 class Buoyancy(Protocol):
@@ -61,7 +62,7 @@ class PotentialFlow:
         self,
         platform: Platform,
         database: HydroDatabase,
-        sea: Waves | None = None,
+        sea: Sea | None = None,
         options: PlatformOptions | None = None,
         *,
         buoyancy: Buoyancy | None = None,
@@ -90,6 +91,7 @@ class PotentialFlow:
         if buoyancy is None:
             self._given[0] = _buoyancy(database)
         self._psi, self._dt = 0.0, 0.0
+        self._waves_at = (nan, nan)
         self._trial = np.zeros((len(PARTS), 6))
         self._shown = np.zeros((len(PARTS), 6))
 
@@ -106,11 +108,17 @@ class PotentialFlow:
 
     def loads(self, time: float, motion: Motion) -> Loads:
         """Force and moment on the platform with their stiffness, damping and mass."""
+        if (time, self._psi) != self._waves_at:  # a step asks more than once
+            self._take_waves(time)
+        return self._sum(motion, self._psi, self._given, self._trial)
+
+    def _take_waves(self, time: float) -> None:
+        """Excitation and drift at a time s."""
         if self._excitation is not None:
             self._given[2] = self._excitation.at(time, self._psi)
         if self._drift is not None:
             self._given[3] = self._drift.at(time, self._psi)
-        return self._sum(motion, self._psi, self._given, self._trial)
+        self._waves_at = time, self._psi
 
     def _sum(self, motion: Motion, psi: float, given: Array, parts: Array) -> Loads:
         """All loads at a heading rad; fills ``parts`` (7,6)."""
@@ -174,10 +182,10 @@ def _memory(
 
 
 def _wave_loads(
-    database: HydroDatabase, sea: Waves | None, options: PlatformOptions
+    database: HydroDatabase, sea: Sea | None, options: PlatformOptions
 ) -> tuple[WaveExcitation | None, MeanDrift | SlowDrift | None]:
     """Excitation and drift of a sea that has waves."""
-    if sea is None or not np.any(sea.amplitude):
+    if sea is None or sea.is_still:
         return None, None
     excitation = WaveExcitation(database, sea)
     if options.drift == "none":

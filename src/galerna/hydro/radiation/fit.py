@@ -25,7 +25,8 @@ from .wave_rows import Rows, parameters_of, realized, residuals, rise, slopes, t
 
 COUPLED = 2e-3  #: of the root of the diagonals' product: less is no coupling
 FELT = 1e-6  #: of the largest force or moment: less is no radiation
-TOLERANCE = 0.01
+TOLERANCE = 0.005  #: of the largest coefficient: one more section where a fit is worse
+NOTED = 0.01  #: of the largest coefficient: a worse fit is told
 LARGEST_ERROR = 0.3  #: above it no fit is of use
 MOST_SECTIONS = 6
 FALLS = 0.8  #: of the root mean square, at least, by one more section
@@ -67,7 +68,7 @@ def fit_radiation(
         shift[square] = own * np.outer(block.scale, block.scale)
         error[square] = np.abs(distance).max(axis=0)
         rms[square] = np.sqrt((np.abs(distance) ** 2).mean(axis=0))
-    notes = _notes(error, rms, tolerance)
+    notes = _notes(error, rms, max(tolerance, NOTED))
     infinite = 0.5 * (database.added_mass_infinite + database.added_mass_infinite.T) - shift
     return RadiationStateSpace(*joined(parts), infinite, error, rms, notes)
 
