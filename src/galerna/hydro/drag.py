@@ -26,6 +26,7 @@ CHANNELS = tuple(
 )
 
 Vector = tuple[float, float, float]
+Matrix = tuple[Vector, Vector, Vector]  # its rows
 Integers = NDArray[np.int64]
 
 
@@ -71,15 +72,15 @@ class ViscousDrag:
     def loads(self, time: float, motion: Motion) -> Loads:
         """Forces, moments and damping on the carrier's frames."""
         n = len(motion.position)
-        loads = Loads(np.zeros((n, 3)), np.zeros((n, 3)), damping=np.zeros((n, 6, 6)))
+        force, moment, damping = np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 6, 6))
         water = self._water
         _drag(
             time, water.series.table, water.series.step, water.series.ramp, water.layout,
             water.stretching, water.depth, self._index, self._geometry, self._figures,
             motion.position, motion.rotation, motion.velocity, motion.angular_velocity,
-            self._row, self._trial, loads.force, loads.moment, loads.damping,
+            self._row, self._trial, force, moment, damping,
         )  # fmt: skip
-        return loads
+        return Loads(force, moment, damping=damping)
 
     def end_step(self, time: float, motion: Motion) -> None:
         """Keep the drag of the last ``loads`` for the record."""
@@ -152,64 +153,70 @@ def _wet(z: float, height: float, level: float) -> float:
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _force(
-    v: Vector, axes: tuple[Vector, Vector, Vector], first: float, second: float, end: float,
-    slope: Array,
-) -> Vector:  # fmt: skip
-    """Force N in the relative velocity v m/s, and its ``slope`` (3,3) over it.
-
-    ``first`` and ``second`` kg/m belong to flow along the sides, ``end`` to that along the axis.
-    """
-    a, b, c = _dot(v, axes[0]), _dot(v, axes[1]), _dot(v, axes[2])
-    speed = np.sqrt(a * a + b * b)
-    unit = (a / speed, b / speed) if speed > 0.0 else (0.0, 0.0)
-    s00, s01 = first * (speed + a * unit[0]), first * a * unit[1]
-    s11, s10 = second * (speed + b * unit[1]), second * b * unit[0]
-    s22 = 2.0 * end * abs(c)
-    fa, fb, fc = first * speed * a, second * speed * b, end * abs(c) * c
-    for i in range(3):
-        for j in range(3):
-            slope[i, j] = (
-                axes[0][i] * (s00 * axes[0][j] + s01 * axes[1][j])
-                + axes[1][i] * (s10 * axes[0][j] + s11 * axes[1][j])
-                + s22 * axes[2][i] * axes[2][j]
-            )
+def _sum(a: float, x: Vector, b: float, y: Vector, c: float, z: Vector) -> Vector:
+    """a x + b y + c z."""
     return (
-        fa * axes[0][0] + fb * axes[1][0] + fc * axes[2][0],
-        fa * axes[0][1] + fb * axes[1][1] + fc * axes[2][1],
-        fa * axes[0][2] + fb * axes[1][2] + fc * axes[2][2],
+        a * x[0] + b * y[0] + c * z[0],
+        a * x[1] + b * y[1] + c * z[1],
+        a * x[2] + b * y[2] + c * z[2],
     )
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _add(r: Vector, f: Vector, slope: Array, force: Array, moment: Array, damping: Array) -> None:
+def _force(
+    v: Vector, d: Vector, e: Vector, axis: Vector, first: float, second: float, end: float
+) -> tuple[Vector, Matrix]:
+    """Force N in the relative velocity v m/s, and the rows of its slope over it.
+
+    ``first`` and ``second`` kg/m belong to flow along the sides ``d`` and ``e``, ``end`` to that
+    along the axis.
+    """
+    a, b, c = _dot(v, d), _dot(v, e), _dot(v, axis)
+    speed = np.sqrt(a * a + b * b)
+    ua, ub = (a / speed, b / speed) if speed > 0.0 else (0.0, 0.0)
+    along = end * abs(c)
+    over_a = _sum(first * (speed + a * ua), d, first * a * ub, e, 0.0, axis)
+    over_b = _sum(second * b * ua, d, second * (speed + b * ub), e, 0.0, axis)
+    slope = (
+        _sum(d[0], over_a, e[0], over_b, 2.0 * along * axis[0], axis),
+        _sum(d[1], over_a, e[1], over_b, 2.0 * along * axis[1], axis),
+        _sum(d[2], over_a, e[2], over_b, 2.0 * along * axis[2], axis),
+    )
+    return _sum(first * speed * a, d, second * speed * b, e, along * c, axis), slope
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _turning(r: Vector, rows: Matrix) -> Matrix:
+    """The rows of r x (each column of a matrix)."""
+    x, y, z = rows
+    return (
+        _sum(r[1], z, -r[2], y, 0.0, x),
+        _sum(r[2], x, -r[0], z, 0.0, y),
+        _sum(r[0], y, -r[1], x, 0.0, z),
+    )
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _put(block: Array, i: int, j: int, rows: Matrix) -> None:
+    """Add a matrix to a block from row i and column j on."""
+    for k in range(3):
+        block[i, j + k] += rows[0][k]
+        block[i + 1, j + k] += rows[1][k]
+        block[i + 2, j + k] += rows[2][k]
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _add(r: Vector, f: Vector, slope: Matrix, force: Array, moment: Array, damping: Array) -> None:
     """Add a force at ``r`` from the frame's origin, and its slope as damping (6,6) there."""
     m = _cross(r, f)
-    for i in range(3):
-        force[i] += f[i]
-        moment[i] += m[i]
-        row = (slope[i, 0], slope[i, 1], slope[i, 2])
-        turned = _cross(r, row)
-        for j in range(3):
-            damping[i, j] += row[j]
-            damping[i, 3 + j] += turned[j]
-    for j in range(6):
-        column = _cross(r, _damped(r, slope, j))
-        for i in range(3):
-            damping[3 + i, j] += column[i]
-
-
-@njit(cache=True, error_model="numpy", fastmath=FAST)
-def _damped(r: Vector, slope: Array, j: int) -> Vector:
-    """``slope`` times the velocity at ``r`` that direction j of the frame's motion gives."""
-    if j < 3:
-        return slope[0, j], slope[1, j], slope[2, j]
-    u = _cross((1.0 * (j == 3), 1.0 * (j == 4), 1.0 * (j == 5)), r)
-    return (
-        slope[0, 0] * u[0] + slope[0, 1] * u[1] + slope[0, 2] * u[2],
-        slope[1, 0] * u[0] + slope[1, 1] * u[1] + slope[1, 2] * u[2],
-        slope[2, 0] * u[0] + slope[2, 1] * u[1] + slope[2, 2] * u[2],
-    )
+    for k in range(3):
+        force[k] += f[k]
+        moment[k] += m[k]
+    spun = (_cross(r, slope[0]), _cross(r, slope[1]), _cross(r, slope[2]))
+    _put(damping, 0, 0, slope)
+    _put(damping, 0, 3, spun)
+    _put(damping, 3, 0, _turning(r, slope))
+    _put(damping, 3, 3, _turning(r, spun))
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
@@ -221,7 +228,6 @@ def _drag(
 ) -> None:  # fmt: skip
     """Loads of all strips; ``total`` (6,) is their sum about the first frame."""
     sample(table, time / step, growth(time, ramp), row)
-    slope = np.empty((3, 3))
     for i in range(len(index)):
         frame, column = index[i, 0], index[i, 1]
         length, height, first, second, end, cx, cy = figures[i]
@@ -244,9 +250,8 @@ def _drag(
             w[1] + cy - velocity[frame, 1] - u[1],
             w[2] - velocity[frame, 2] - u[2],
         )
-        axes = (_turned(R, geometry[i, 1]), _turned(R, geometry[i, 2]), axis)
-        wide = wet * length
-        f = _force(v, axes, wide * first, wide * second, wet * end, slope)
+        d, e, wide = _turned(R, geometry[i, 1]), _turned(R, geometry[i, 2]), wet * length
+        f, slope = _force(v, d, e, axis, wide * first, wide * second, wet * end)
         _add(r, f, slope, force[frame], moment[frame], damping[frame])
     total[:3], total[3:] = 0.0, moment[0]
     for j in range(len(force)):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -120,7 +121,7 @@ def _edges(member: Member, spacing: float) -> Array:
     factor = spacing * (1.0 if abs(axis[2]) > _LYING else _LEVEL_STRIPS)
     corners = np.unique(np.concatenate([[0.0, 1.0], _corners(member)]))
     pieces = [np.zeros(1)]
-    for a, b in zip(corners[:-1], corners[1:], strict=True):
+    for a, b in pairwise(corners):
         fine = np.linspace(a, b, 200)
         z = _points(member, fine)[:, 2]
         density = member.length / (factor * (1.0 + np.abs(z) / _GROWTH))

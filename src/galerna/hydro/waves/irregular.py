@@ -36,7 +36,9 @@ class Band:
         order = np.arange(max(np.ceil(self.lowest / step), 1.0), self.highest / step)
         if not len(order):
             figures = f"{self.lowest:.4g} and {self.highest:.4g} rad/s"
-            raise InputError("sea.waves", f"no frequency stands between {figures}", "widen the band")
+            raise InputError(
+                "sea.waves", f"no frequency stands between {figures}", "widen the band"
+            )
         return step * order
 
 

@@ -88,7 +88,7 @@ def water_columns(
     levels = [_levels(sea, top, bottom) for top, bottom in zip(tops, bottoms, strict=True)]
     extra = 2 if mode == _EXTRAPOLATION else 1
     widths = [3 * (len(s) + extra) - 2 for s in levels]
-    first = np.concatenate([[0], np.cumsum(widths)])
+    first = np.cumsum([0, *widths])
     samples = sea.samples(_fastest(sea, float(np.max(tops, initial=-np.inf))))
     table = np.empty((samples, first[-1]), dtype=np.float32)
     for column, (place, s) in enumerate(zip(places, levels, strict=True)):
@@ -106,10 +106,10 @@ def _height(s: Array) -> Array:
 
 def _levels(sea: Sea, top: float, bottom: float) -> Array:
     """The fewest levels s (p,) that follow the velocity from ``top`` to ``bottom`` m."""
-    ends = np.log1p(-np.array([top, bottom]) / _SCALE)
+    first, last = np.log1p(-top / _SCALE), np.log1p(-bottom / _SCALE)
     weight = np.abs(sea.amplitude * sea.frequency) ** 2
     for count in _COUNTS:
-        s = np.linspace(*ends, count)
+        s = np.linspace(first, last, count)
         if _error_between(sea, s, weight) <= _TOLERANCE:
             break
     return s
@@ -138,7 +138,7 @@ def _fastest(sea: Sea, top: float) -> Complex:
 def _column_transfer(sea: Sea, place: Array, s: Array, mode: int) -> Complex:
     """Transfers (n, 1 + 3p or 4 + 3p) of a row's part for one column."""
     velocity = _velocity(sea, *profiles(sea, _height(s)))
-    parts = [np.ones((len(sea.frequency), 1)), velocity.reshape(len(sea.frequency), -1)]
+    parts = [np.ones((len(sea.frequency), 1)), velocity.reshape(len(sea.frequency), 3 * len(s))]
     if mode == _EXTRAPOLATION:
         along, upward = profiles(sea, 0.0)
         k = sea.wavenumber[:, None]

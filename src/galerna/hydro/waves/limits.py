@@ -28,7 +28,9 @@ def require_regular(height: float, period: float, depth: float, gravity: float) 
     require_depth("sea.waves.height_m", height, depth)
 
 
-def require_irregular(height: float, period: float, depth: float, gravity: float) -> tuple[str, ...]:
+def require_irregular(
+    height: float, period: float, depth: float, gravity: float
+) -> tuple[str, ...]:
     """Warnings for a significant height m with a peak period s.
 
     Raises InputError where no sea is so steep.
@@ -53,7 +55,9 @@ def require_irregular(height: float, period: float, depth: float, gravity: float
 def require_depth(where: str, height: float, depth: float) -> None:
     """Raise InputError unless waves of a height m stand on a depth m."""
     if isfinite(depth) and height > DEPTH_LIMIT * depth:
-        what = f"{height:g} m on a depth of {depth:g} m: waves break above {DEPTH_LIMIT * depth:.3g} m"
+        what = (
+            f"{height:g} m on a depth of {depth:g} m: waves break above {DEPTH_LIMIT * depth:.3g} m"
+        )
         raise InputError(where, what, "lower the height")
 
 

@@ -70,19 +70,20 @@ def from_elevation(
     t, eta = np.asarray(time, dtype=float), np.asarray(elevation, dtype=float)
     step = _even_step(t, eta, where)
     if t[0] > 0.0 or t[-1] < duration:
-        what = f"the elevation is given from {t[0]:g} to {t[-1]:g} s, the run is from 0 to {duration:g} s"
+        given = f"the elevation is given from {t[0]:g} to {t[-1]:g} s"
+        what = f"{given}, the run is from 0 to {duration:g} s"
         raise InputError(where, what, "shorten the run or give more of it")
     mean = float(eta.mean())
     closed = _closed(eta - mean, step)
     period = step * len(closed)
     amplitude = 2.0 * np.fft.rfft(closed, norm="forward")
-    frequency = 2.0 * pi / period * np.arange(len(amplitude))
+    frequency: Array = 2.0 * pi / period * np.arange(len(amplitude), dtype=float)
     if len(closed) % 2 == 0:
         amplitude[-1] *= 0.5
     inside = (frequency >= lowest) & (frequency <= highest)
     inside[0] = False
-    amplitude = amplitude * np.exp(-1j * frequency * t[0])
-    return frequency[inside], amplitude[inside], period, mean
+    shifted: Complex = amplitude * np.exp(-1j * frequency * t[0])
+    return frequency[inside], shifted[inside], period, mean
 
 
 def _even_step(t: Array, eta: Array, where: str) -> float:
@@ -95,14 +96,18 @@ def _even_step(t: Array, eta: Array, where: str) -> float:
     step = float(t[-1] - t[0]) / (len(t) - 1)
     worst = float(np.abs(np.diff(t) - step).max())
     if step <= 0.0 or worst > _EVEN * step:
-        what = f"times must rise in even steps; they differ by up to {worst:.3g} s from {step:.6g} s"
+        what = (
+            f"times must rise in even steps; they differ by up to {worst:.3g} s from {step:.6g} s"
+        )
         raise InputError(where, what, "sample the elevation evenly")
     return step
 
 
 def _closed(eta: Array, step: float) -> Array:
-    """A series with the way back from its end to its start."""
-    steps = max(int(round(_BRIDGE / step)), 4)
+    """A series without a mean and the way from its end to its start, which has none either."""
+    steps = max(round(_BRIDGE / step), 4)
     end_slope, start_slope = (eta[-1] - eta[-2]) / step, (eta[1] - eta[0]) / step
     way = CubicHermiteSpline([0.0, steps * step], [eta[-1], eta[0]], [end_slope, start_slope])
-    return np.concatenate([eta, way(step * np.arange(1, steps))])
+    s = np.arange(1, steps) / steps
+    back, bump = way(steps * step * s), (s * (1.0 - s)) ** 2
+    return np.concatenate([eta, back - bump * (back.sum() / bump.sum())])

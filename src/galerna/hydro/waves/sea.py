@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from functools import cached_property
 from math import pi
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -49,15 +50,15 @@ class Sea:
         if off.any() or np.any(np.diff(self.order, prepend=0) < 1):
             raise InputError(
                 "sea",
-                f"wave frequencies must rise on the multiples of {2.0 * pi / self.period:.6g} rad/s",
+                f"wave frequencies must rise on multiples of {2.0 * pi / self.period:.6g} rad/s",
                 "give a period in which every wave has a whole number of cycles",
             )
 
     @classmethod
-    def still(cls, depth: float, **other: object) -> Sea:
+    def still(cls, depth: float, **other: Any) -> Sea:
         """Water without waves; ``other`` fields as those of the class."""
         none = np.zeros(0)
-        return cls(none, none, none.astype(complex), 1.0, depth, **other)  # type: ignore[arg-type]
+        return cls(none, none, none.astype(complex), 1.0, depth, **other)
 
     @classmethod
     def regular(
@@ -67,13 +68,13 @@ class Sea:
         depth: float,
         direction: float = 0.0,
         phase: float = 0.0,
-        **other: object,
+        **other: Any,
     ) -> Sea:
         """Waves of a height m and a period s; at a ``phase`` rad of 0 a crest is at x = t = 0."""
         amplitude = np.array([0.5 * height * np.exp(1j * phase)])
         return cls(
             np.array([2.0 * pi / period]), np.array([direction]), amplitude, period, depth, **other
-        )  # type: ignore[arg-type]
+        )
 
     @cached_property
     def order(self) -> NDArray[np.int64]:

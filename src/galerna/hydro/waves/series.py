@@ -89,7 +89,7 @@ def samples_needed(weight: Array, frequency: Array, order: NDArray[np.int64], pe
 
 
 def tabulate(spectrum: Complex, order: NDArray[np.int64], samples: int) -> Table:
-    """Table (N,k) of Re sum_j c_j exp(2 pi i m_j t / T) for amplitudes (n,k), orders (n,) from 1."""
+    """Table (N,k) of Re sum_j c_j exp(2 pi i m_j t / T), amplitudes (n,k) and orders (n,)."""
     table = np.empty((samples, spectrum.shape[1]), dtype=np.float32)
     for k, column in enumerate(spectrum.T):
         half = np.zeros(samples // 2 + 1, dtype=complex)

@@ -34,9 +34,7 @@ def jonswap(
     return np.asarray(scale * x**-5.0 * np.exp(-1.25 * x**-4.0) * enhanced)
 
 
-def pierson_moskowitz(
-    frequency: ArrayLike, significant_height: float, peak_period: float
-) -> Array:
+def pierson_moskowitz(frequency: ArrayLike, significant_height: float, peak_period: float) -> Array:
     """The same for a fully developed sea (Pierson and Moskowitz, 1964); integral Hs^2/16."""
     return jonswap(frequency, significant_height, peak_period, 1.0)
 
