@@ -208,7 +208,7 @@ def _models(
     if of_sea.drag:
         models["drag"] = ViscousDrag(platform, sea, stretching=of_sea.stretching, carrier=carrier)
     if platform.mooring is not None and options.mooring != "none":
-        models["mooring"] = mooring_loads(platform, sea, options.mooring, carrier=carrier)
+        models["mooring"] = mooring_loads(platform.mooring, sea, options.mooring, carrier)
     return models
 
 
