@@ -1,4 +1,5 @@
 from dataclasses import replace
+from itertools import pairwise
 from types import SimpleNamespace
 
 import numpy as np
@@ -128,8 +129,9 @@ def test_every_part_is_what_it_says(database, fit):
 
 
 def test_blocks_are_the_slopes_of_the_loads(database, fit):
-    model = model_of(database, fit, irregular(0.4))
     rng = np.random.default_rng(3)
+    stiffness = 1e6 * rng.normal(size=(6, 6)) * np.outer(*2 * [np.repeat([1.0, 50.0], 3)])
+    model = model_of(replace(database, hydrostatic_stiffness=stiffness), fit, irregular(0.4))
     model.begin_step(5.0, 0.4, moving(rng, 0.7))
     motion = moving(rng, 0.9)
     loads = model.loads(5.4, motion)
@@ -201,7 +203,7 @@ def test_trials_change_nothing_and_a_resume_keeps_the_bits(database, fit):
 def run(model, motions, first):
     """Loads (k,6) of steps of 0.1 s between motions, the first of which is accepted."""
     out = []
-    for k, (before, after) in enumerate(zip(motions[:-1], motions[1:], strict=True), first):
+    for k, (before, after) in enumerate(pairwise(motions), first):
         model.begin_step(0.1 * k, 0.1, before)
         out.append(total(model.loads(0.1 * (k + 1), after)))
         model.end_step(0.1 * (k + 1), after)
@@ -343,7 +345,7 @@ def test_database_about_another_point_is_moved(database):
     assert loads.moment[0, 1] == pytest.approx(4.8e8 + 10.0 * 8e6)
 
 
-# -- waves ------------------------------------------------------------------------------------------
+# -- waves --------------------------------------------------------------------------------------
 
 
 def test_regular_wave_gives_its_transfer_function(database, fit):

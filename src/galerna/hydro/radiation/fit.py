@@ -25,9 +25,10 @@ from .wave_rows import Rows, parameters_of, realized, residuals, rise, slopes, t
 
 COUPLED = 2e-3  #: of the root of the diagonals' product: less is no coupling
 FELT = 1e-6  #: of the largest force or moment: less is no radiation
-TOLERANCE = 0.005  #: of the largest coefficient: one more section where a fit is worse
+TOLERANCE = 0.01  #: of the largest coefficient: one more section where a fit is worse
 NOTED = 0.01  #: of the largest coefficient: a worse fit is told
 LARGEST_ERROR = 0.3  #: above it no fit is of use
+ALIKE = 0.5  #: of the tolerance, by which two sets of modes may differ that are one
 MOST_SECTIONS = 6
 FALLS = 0.8  #: of the root mean square, at least, by one more section
 SEARCH, POLISH = 40, 200  #: evaluations of the Jacobian
@@ -55,11 +56,14 @@ def fit_radiation(
     if not np.isfinite(K).all():
         raise InputError("radiation", "added mass or damping of the database is not finite")
     error, rms = np.zeros((6, 6)), np.zeros((6, 6))
-    parts = []
+    parts, known = [], list[tuple[_Block, Rows]]()
     for modes in coupled_modes(K):
         square = np.ix_(modes, modes)
         block = _Block.of(database.frequency, K[:, square[0], square[1]])
-        rows = _fit_block(block, tolerance, most_sections)
+        rows = _same(block, known, ALIKE * tolerance)
+        if rows is None:
+            rows = _fit_block(block, tolerance, most_sections)
+        known.append((block, rows))
         A, B = realized(rows)
         whole = np.zeros((len(A), 6))
         whole[:, modes] = B * block.scale
@@ -118,6 +122,18 @@ class _Block:
         return largest, shapes[:, ::-1], middle if values[-1] > 0.0 else 1.0
 
 
+def _same(block: _Block, known: list[tuple[_Block, Rows]], within: float) -> Rows | None:
+    """Rows of another block that is this one but for signs, as a body of revolution has them."""
+    for other, rows in known:
+        if other.K.shape == block.K.shape:
+            alike = (other.K[:, 0] * block.K[:, 0].conj()).real.sum(axis=0)
+            sign = np.where(alike < 0.0, -1.0, 1.0)
+            apart = (sign[:, None] * other.K * sign - block.K) / block.largest
+            if np.abs(apart).max() < within:
+                return Rows(rows.a, rows.b, rows.G * sign)
+    return None
+
+
 def _fit_block(block: _Block, tolerance: float, most: int) -> Rows:
     """The rows of the fewest sections that do; their number is the rank of the damping."""
     power, shapes, middle = block.waves()
@@ -143,18 +159,18 @@ def _fit_block(block: _Block, tolerance: float, most: int) -> Rows:
 
 def _least(block: _Block, starts: list[Rows]) -> Rows:
     """The best of least-squares fits from some starts, looked for shortly and then polished."""
-    found = [_solve(block, start, SEARCH) for start in starts]
-    return _solve(block, min(found, key=lambda each: each[1])[0], POLISH)[0]
+    found = [_solve(block, start, SEARCH, 1e-3) for start in starts]
+    return _solve(block, min(found, key=lambda each: each[1])[0], POLISH, 1e-5)[0]
 
 
-def _solve(block: _Block, start: Rows, most: int) -> tuple[Rows, float]:
-    """Least squares from a start in at most so many steps: rows and cost."""
+def _solve(block: _Block, start: Rows, most: int, ends: float) -> tuple[Rows, float]:
+    """Least squares in at most so many steps, or until the cost falls by less than ``ends``."""
     r, q = start.a.shape
     data = (r, q, block.frequency, block.K, 1.0 / block.largest)
     least, bound = _bounds(start, block.frequency)
     out = least_squares(
         residuals, np.clip(parameters_of(start), least + 1e-9, bound - 1e-9), slopes, args=data,
-        bounds=(least, bound), x_scale="jac", max_nfev=most, ftol=1e-5, xtol=1e-7, gtol=1e-12,
+        bounds=(least, bound), x_scale="jac", max_nfev=most, ftol=ends, xtol=1e-7, gtol=1e-12,
     )  # fmt: skip
     return Rows(*unpacked(out.x, r, q, len(block.scale))), float(out.cost)
 
