@@ -1,211 +1,296 @@
-"""A line at rest in its own plane: elastic, heavy or buoyant, hanging or resting on the seabed.
+"""One elastic line at rest in still water: forces at its ends and how they change with the ends.
 
-With the horizontal tension H and the vertical one V at the upper end B, over a line of length L,
-weight w a metre and stiffness EA whose lower end is A (Jonkman, NREL/TP-500-41958 (2007),
-eqs. 2-35 to 2-38; the dissertation's 2.103 and 2.104 lack parentheses in print), hanging,
-
-    x = H/w (asinh(V/H) - asinh((V - wL)/H)) + H L/EA
-    z = (sqrt(H^2 + V^2) - sqrt(H^2 + (V - wL)^2))/w + (V L - w L^2/2)/EA
-
-and with L_B = L - V/w of it on the seabed, of friction C_B,
-
-    x = L_B + H/w asinh(V/H) + H L/EA + C_B w/(2EA) (u max(u, 0) - L_B^2),  u = L_B - H/(C_B w)
-    z = (sqrt(H^2 + V^2) - H)/w + V^2/(2 EA w)
-
-Both are the gradient of the line's complementary energy, which is convex: z rises with V at a
-constant H, and along z(H, V) = z the distance x rises with H. So there is one solution, and two
-nested searches between bounds always find it; Newton's method is tried first.
+A vertical plane; the line runs from A to B, ``distance`` x apart, at heights a and b above the
+seabed. H and V are the components of its tension towards B and up; V grows by the weight w per
+metre of unstretched length. Equations are those of docs/theory/mooring.md. Both kinds of line
+are found from one unknown with one root in a known interval, by Newton's method kept inside it:
+without a warm start, to rounding, so that a force depends on nothing but where the ends are.
 """
 
 from __future__ import annotations
 
-from math import asinh, inf, sqrt, tanh
+from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
 
 from galerna.contract import Array
 
-NEWTON_STEPS, SEARCH_STEPS = 20, 200
-ROUNDING = 1e-13  #: of the line's length, to which distances are met
-SMALLEST = 1e-12  #: of the line's weight and stiffness: a horizontal tension that counts as none
+FAST = {"reassoc", "contract", "arcp", "nsz", "afn"}
+CLOSEST = 1e-9  #: of the length: nearer ends count as so far apart, the force along their offset
+STEPS = 100  #: of an iteration; Newton takes 3 to 8
+QUADRATIC = 1e-8  #: relative step after which one more changes only the rounding
+
+#: what ``solve`` fills: components at A and B, and the length that rests
+HORIZONTAL_A, VERTICAL_A, HORIZONTAL_B, VERTICAL_B, RESTING = range(5)
 
 
-@njit(cache=True, error_model="numpy")
-def distances(
-    H: float, V: float, L: float, EA: float, w: float, friction: float
-) -> tuple[float, float, float, float, float]:
-    """Distances x, z m at tensions H > 0, V N, and dx/dH, dx/dV = dz/dH, dz/dV.
+@dataclass(frozen=True, eq=False)
+class Catenary:
+    """A line at rest. Tension towards B: components N at A and B; ``resting`` m on the seabed.
 
-    ``friction`` below 0: there is no seabed.
+    ``stiffness`` (4,3) N/m: the four components over x, a and b.
     """
-    top = sqrt(H * H + V * V)
-    grounded = L - V / w
-    if friction < 0.0 or grounded <= 0.0:
-        low = V - w * L
-        bottom = sqrt(H * H + low * low)
-        bend = asinh(V / H) - asinh(low / H)
-        x = H / w * bend + H * L / EA
-        z = (top - bottom) / w + L * (V - 0.5 * w * L) / EA
-        x_H = (bend - V / top + low / bottom) / w + L / EA
-        return x, z, x_H, (H / top - H / bottom) / w, (V / top - low / bottom) / w + L / EA
-    bend = asinh(V / H)
-    x = grounded + H / w * bend + H * L / EA
-    x_H, x_V = (bend - V / top) / w + L / EA, (H / top - 1.0) / w
-    if friction > 0.0:
-        held = grounded - H / (friction * w)
-        loose = max(held, 0.0)
-        x += friction * w / (2.0 * EA) * (held * loose - grounded * grounded)
-        x_H -= loose / EA
-        x_V += friction * (grounded - loose) / EA
-    z = (top - H) / w + V * V / (2.0 * EA * w)
-    return x, z, x_H, x_V, V / (w * top) + V / (EA * w)
 
+    horizontal_a: float
+    vertical_a: float
+    horizontal_b: float
+    vertical_b: float
+    resting: float
+    stiffness: Array
 
-@njit(cache=True, error_model="numpy")
-def _vertical(
-    H: float, z: float, L: float, EA: float, w: float, friction: float
-) -> tuple[float, float]:
-    """V at which z is met at a horizontal tension, and the distance x there."""
-    low, high = (0.0, w * L) if friction >= 0.0 else (-w * L, w * L)
-    step = w * L + EA * abs(z) / L
-    while distances(H, high, L, EA, w, friction)[1] < z:
-        high += step
-        step *= 2.0
-    while friction < 0.0 and distances(H, low, L, EA, w, friction)[1] > z:
-        low -= step
-        step *= 2.0
-    V = 0.5 * (low + high)
-    for _ in range(SEARCH_STEPS):
-        _, found, _, _, slope = distances(H, V, L, EA, w, friction)
-        if found > z:
-            high = V
-        else:
-            low = V
-        ahead = V - (found - z) / slope
-        before, V = V, ahead if low < ahead < high else 0.5 * (low + high)
-        if abs(V - before) <= 1e-15 * (abs(V) + w * L) or high - low <= 1e-15 * (abs(V) + w * L):
-            break
-    return V, distances(H, V, L, EA, w, friction)[0]
+    @property
+    def tension_a(self) -> float:
+        """Tension N at A."""
+        return float(np.hypot(self.horizontal_a, self.vertical_a))
 
-
-@njit(cache=True, error_model="numpy")
-def _searched(
-    x: float, z: float, L: float, EA: float, w: float, friction: float, least: float
-) -> tuple[float, float]:
-    """H and V by nested searches: x rises with H along the curve of constant z."""
-    low, high = least, w * L + EA * (sqrt(x * x + z * z) / L) * 1e-3
-    while _vertical(high, z, L, EA, w, friction)[1] < x:
-        low = high
-        high *= 4.0
-    if _vertical(low, z, L, EA, w, friction)[1] >= x:
-        return low, _vertical(low, z, L, EA, w, friction)[0]
-    for _ in range(SEARCH_STEPS):
-        H = sqrt(low * high)
-        if _vertical(H, z, L, EA, w, friction)[1] < x:
-            low = H
-        else:
-            high = H
-        if high - low <= 1e-15 * high:
-            break
-    H = sqrt(low * high)
-    return H, _vertical(H, z, L, EA, w, friction)[0]
-
-
-@njit(cache=True, error_model="numpy")
-def _newton(
-    x: float, z: float, L: float, EA: float, w: float, friction: float, least: float
-) -> tuple[float, float, bool]:
-    """H and V by Newton's method from Jonkman's start, and whether it got there."""
-    if x <= 0.0:
-        return 0.0, 0.0, False
-    spread = (L * L - z * z) / (x * x) - 1.0
-    sag = 0.2 if spread <= 0.0 else sqrt(3.0 * spread)
-    H, V = max(abs(0.5 * w * x / sag), least), 0.5 * w * (z / tanh(sag) + L)
-    size, last = ROUNDING * (L + x + abs(z)), inf
-    for _ in range(NEWTON_STEPS):
-        found_x, found_z, x_H, x_V, z_V = distances(H, V, L, EA, w, friction)
-        off_x, off_z = found_x - x, found_z - z
-        error = abs(off_x) + abs(off_z)
-        if error <= size or (error <= 1e2 * size and error >= last):
-            return H, V, True
-        last = error
-        det = x_H * z_V - x_V * x_V
-        if not det > 0.0:
-            return H, V, False
-        change = (off_x * z_V - off_z * x_V) / det
-        V -= (off_z * x_H - off_x * x_V) / det
-        H = H - change if change < 0.9 * H else 0.1 * H
-        if friction >= 0.0 and V < 0.0:
-            return H, V, False
-    return H, V, False
-
-
-@njit(cache=True, error_model="numpy")
-def hang(x: float, z: float, L: float, EA: float, w: float, friction: float, out: Array) -> None:
-    """Fill ``out`` (8,): H, V at the end B; H, V at A; length on the seabed; dH/dx, dH/dz, dV/dz.
-
-    B stands x >= 0 and z m from A; ``friction`` is that of the seabed on which A lies, below 0
-    where there is none. V and H are what pulls B towards A. w > 0; see ``solve`` for all lines.
-    """
-    least = SMALLEST * min(w * L, EA)
-    if friction >= 0.0:
-        # with a horizontal tension of nothing the line hangs down from B and lies in a heap
-        V = w * z if inf == EA else EA * (sqrt(1.0 + 2.0 * w * z / EA) - 1.0)
-        if w * L >= V and x <= L - V / w:
-            out[:] = 0.0
-            out[1], out[4] = V, L - V / w
-            out[7] = w / (1.0 + V / EA)
-            return
-    H, V, found = _newton(x, z, L, EA, w, friction, least)
-    if not found:
-        H, V = _searched(x, z, L, EA, w, friction, least)
-    _, _, x_H, x_V, z_V = distances(H, V, L, EA, w, friction)
-    grounded = max(L - V / w, 0.0) if friction >= 0.0 else 0.0
-    out[0], out[1], out[4] = H, V, grounded
-    out[2] = max(H - friction * w * grounded, 0.0) if grounded > 0.0 else H
-    out[3] = 0.0 if grounded > 0.0 else V - w * L
-    if grounded > 0.0 and V <= 0.0:  # all of it on the seabed
-        out[5], out[6], out[7] = 1.0 / x_H, 0.0, 0.0
-        return
-    det = x_H * z_V - x_V * x_V
-    out[5], out[6], out[7] = z_V / det, -x_V / det, x_H / det
-
-
-@njit(cache=True, error_model="numpy")
-def solve(x: float, z: float, L: float, EA: float, w: float, friction: float, out: Array) -> None:
-    """As ``hang`` for lines of any weight: buoyant ones hang upwards, weightless ones are straight.
-
-    A line without weight that is longer than its distance is slack.
-    """
-    if w > 0.0:
-        hang(x, z, L, EA, w, friction, out)
-    elif w < 0.0:
-        hang(x, -z, L, EA, -w, -1.0, out)
-        out[1], out[3], out[6] = -out[1], -out[3], -out[6]
-    else:
-        out[:] = 0.0
-        reach = sqrt(x * x + z * z)
-        if reach <= L:
-            return
-        pull, cx, cz = EA * (reach / L - 1.0), x / reach, z / reach
-        out[0] = out[2] = pull * cx
-        out[1] = out[3] = pull * cz
-        along, across = EA / L, pull / reach
-        out[5] = along * cx * cx + across * cz * cz
-        out[6] = (along - across) * cx * cz
-        out[7] = along * cz * cz + across * cx * cx
+    @property
+    def tension_b(self) -> float:
+        """Tension N at B."""
+        return float(np.hypot(self.horizontal_b, self.vertical_b))
 
 
 def catenary(
-    x: float, z: float, length: float, stiffness: float, weight: float, friction: float = -1.0
-) -> dict[str, float]:
-    """Tensions N of one line at its ends, and how they change with the distances x >= 0, z m.
+    distance: float,
+    rise: float,
+    length: float,
+    weight: float,
+    stiffness: float,
+    *,
+    friction: float = 0.0,
+    height: float | None = 0.0,
+) -> Catenary:
+    """A line whose end B is ``distance`` m away from A and ``rise`` m above it.
 
-    ``length`` m unstretched, ``stiffness`` EA N, ``weight`` N/m; ``friction`` of the seabed on
-    which the lower end lies, below 0 where the line hangs free.
+    ``length`` m is unstretched, ``weight`` N/m in water (a buoyant line's is negative),
+    ``stiffness`` EA N. ``height`` m is that of A above the seabed, None without one;
+    ``friction`` acts where the line rests as far as A.
     """
-    out = np.zeros(8)
-    solve(x, z, length, stiffness, weight, friction, out)
-    names = ("H", "V", "anchor_H", "anchor_V", "grounded", "H_x", "H_z", "V_z")
-    return dict(zip(names, out.tolist(), strict=True))
+    forces, slopes = np.zeros(5), np.zeros((4, 3))
+    rests = height is not None
+    low = 0.0 if height is None else height
+    solve(distance, low, low + rise, length, weight, stiffness, friction, rests, forces, slopes)
+    return Catenary(*forces.tolist(), slopes)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def solve(
+    x: float, a: float, b: float, length: float, weight: float, stiffness: float,
+    friction: float, rests: bool, forces: Array, slopes: Array,
+) -> None:  # fmt: skip
+    """Fill ``forces`` (5,) and ``slopes`` (4,3), N/m over x, a and b; see the class Catenary.
+
+    ``rests`` says that there is a seabed. A buoyant line is a heavy one upside down, and
+    rests nowhere. Ends below the seabed count as on it where the line rests.
+    """
+    x = max(x, CLOSEST * length)
+    if weight < 0.0:
+        _hang(x, a - b, length, -weight, stiffness, forces, slopes)
+        _turn_over(forces, slopes)
+    elif not rests or not _lie(
+        x, max(a, 0.0), max(b, 0.0), length, weight, stiffness, friction, forces, slopes
+    ):
+        _hang(x, b - a, length, weight, stiffness, forces, slopes)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _turn_over(forces: Array, slopes: Array) -> None:
+    """From a line upside down to the line: V changes its sign, and so do the heights."""
+    forces[VERTICAL_A], forces[VERTICAL_B] = -forces[VERTICAL_A], -forces[VERTICAL_B]
+    for i in range(4):
+        vertical = i in (VERTICAL_A, VERTICAL_B)
+        for j in range(3):
+            if vertical != (j > 0):
+                slopes[i, j] = -slopes[i, j]
+
+
+# -- a line that hangs --------------------------------------------------------------------
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _start(X: float, Z: float, e: float) -> float:
+    """A first s: of a line that sags, of one that is stretched, or of one between the two."""
+    between = np.cbrt(6.0 * e)
+    chord = np.sqrt(X * X + Z * Z)
+    if chord >= 1.0:
+        return min(e / max(chord - 1.0, 1e-300), between)
+    sag = np.sqrt((1.0 - Z) * (1.0 + Z)) / X
+    if sag < 2.0:
+        return max(np.sqrt(6.0 * (sag - 1.0)), between)
+    return sag * np.log(2.0 * sag)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _hanging(X: float, Z: float, e: float) -> tuple[float, float, float, float]:
+    """s = sinh(lambda), lambda, tanh(m) and sech(m) of eq. (5), by eq. (6).
+
+    ``X`` and ``Z`` are distance and rise over the length, ``e`` = w L / (2 EA). The left side
+    of eq. (6) rises with s from below 0 to above it within the bounds.
+    """
+    low = e / np.sqrt(X * X + Z * Z)
+    high = 4.0 / X * (1.0 / X + e)
+    s = min(max(_start(X, Z, e), low), high)
+    for _ in range(STEPS):
+        c, lag = np.sqrt(1.0 + s * s), np.arcsinh(s)
+        p, q = Z * s / (s + e * c), X * s / (lag + e)
+        norm = p * p + q * q
+        misfit = 0.5 * np.log(norm)
+        slope = (p * p * e / (c * (s + e * c)) + q * q * (1.0 - s / (c * (lag + e)))) / norm
+        if misfit > 0.0:
+            high = s
+        else:
+            low = s
+        step = -misfit / slope
+        new = s * np.exp(min(max(step, -5.0), 5.0))
+        if abs(step) < QUADRATIC:
+            s = new
+            break
+        s = new if low < new < high else np.sqrt(low * high)
+    lag = np.arcsinh(s)
+    return s, lag, Z * s / (s + e * np.sqrt(1.0 + s * s)), X * s / (lag + e)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _hang(
+    x: float, z: float, length: float, weight: float, stiffness: float, forces: Array, slopes: Array
+) -> None:
+    """A heavy line that touches nothing: eqs. (5) to (8)."""
+    half = 0.5 * weight * length
+    e = half / stiffness
+    s, lag, p, q = _hanging(x / length, z / length, e)
+    c = np.sqrt(1.0 + s * s)
+    forces[HORIZONTAL_A] = forces[HORIZONTAL_B] = 0.5 * weight * x / (lag + e)
+    forces[VERTICAL_A], forces[VERTICAL_B] = half * (p * c / s - 1.0), half * (p * c / s + 1.0)
+    forces[RESTING] = 0.0
+    both = 2.0 * q / (1.0 + q * q * s * s)
+    xx, zz = 2.0 * (lag + e) - both * q * s * c, both * q * s * c + 2.0 * e
+    xz = -both * p * s
+    scale = weight / (xx * zz - xz * xz)
+    for end in (HORIZONTAL_A, HORIZONTAL_B):
+        slopes[end, 0], slopes[end, 1], slopes[end, 2] = scale * zz, scale * xz, -scale * xz
+        slopes[end + 1, 0], slopes[end + 1, 1] = -scale * xz, -scale * xx
+        slopes[end + 1, 2] = scale * xx
+
+
+# -- a line that rests on the seabed -------------------------------------------------------
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _lifted(H: float, h: float, weight: float, stiffness: float) -> tuple[float, float, float]:
+    """Tension S and V at the height h of a line that leaves the seabed with H, and dV/dH; (9)."""
+    if h <= 0.0:
+        return H, 0.0, 0.0
+    over = 2.0 * stiffness * weight * h
+    rise = over / (np.sqrt((stiffness + H) ** 2 + over) + stiffness + H)
+    S = H + rise
+    V = np.sqrt(rise * (S + H))
+    return S, V, stiffness * V / ((stiffness + S) * (S + H))
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _reach(H: float, S: float, V: float, VH: float) -> tuple[float, float]:
+    """w times what a lifted part gains over its length in reach, but for stretch; d/dH of it."""
+    if V <= 0.0:
+        return 0.0, 0.0
+    lag = np.arcsinh(V / H)
+    return H * lag - V, lag - V / S - VH * (S - H) / S
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _dragged(H: float, ground: float, drag: float) -> tuple[float, float, float]:
+    """EA times the stretch that friction takes from a resting part, and d/dH, d/dground of it.
+
+    ``drag`` N/m is the friction; the part beyond H / drag has no tension.
+    """
+    if drag <= 0.0 or ground <= 0.0:
+        return 0.0, 0.0, 0.0
+    loose = max(ground - H / drag, 0.0)
+    return 0.5 * drag * (ground - loose) * (ground + loose), loose, drag * (ground - loose)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _first_pull(x: float, a: float, b: float, length: float, weight: float) -> float:
+    """A first H: of an inextensible line, from how far it is drawn from slack to straight."""
+    h = max(a + b, 1e-9 * length)
+    drawn = min(max((x - length + h) / h, 1e-9), 0.98)
+    return weight * h * 2.0 / 9.0 * (1.0 / (1.0 - drawn) ** 2 - 1.0)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _pull(
+    x: float, a: float, b: float, length: float, weight: float, stiffness: float, drag: float
+) -> float:
+    """H of a line that rests somewhere, eq. (10); -1 where it has no length left to rest."""
+    _, slack_a, _ = _lifted(0.0, a, weight, stiffness)
+    _, slack_b, _ = _lifted(0.0, b, weight, stiffness)
+    spare = length - (slack_a + slack_b) / weight
+    if spare <= 0.0:
+        return -1.0
+    if x <= spare:
+        return 0.0
+    low, high = 0.0, stiffness * x / length + drag * length
+    H = min(_first_pull(x, a, b, length, weight), high)
+    for _ in range(STEPS):
+        Sa, Va, VaH = _lifted(H, a, weight, stiffness)
+        Sb, Vb, VbH = _lifted(H, b, weight, stiffness)
+        ground = length - (Va + Vb) / weight
+        (gain_a, slope_a), (gain_b, slope_b) = _reach(H, Sa, Va, VaH), _reach(H, Sb, Vb, VbH)
+        held, by_H, by_ground = _dragged(H, ground, drag)
+        misfit = length - x + (gain_a + gain_b) / weight + (H * length - held) / stiffness
+        if misfit < 0.0:
+            if ground <= 0.0:
+                return -1.0
+            low = H
+        else:
+            high = H
+        slope = (slope_a + slope_b) / weight + (length - by_H) / stiffness
+        slope += by_ground * (VaH + VbH) / (weight * stiffness)
+        new = H - misfit / slope
+        if abs(new - H) <= QUADRATIC * H:
+            H = new
+            break
+        H = new if low < new < high else (0.5 * (low + high) if low > 0.0 else 0.1 * H)
+    return H
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _lie(
+    x: float, a: float, b: float, length: float, weight: float, stiffness: float, friction: float,
+    forces: Array, slopes: Array,
+) -> bool:  # fmt: skip
+    """A heavy line that rests somewhere between its ends; False where it does not."""
+    drag = friction * weight if a == 0.0 else 0.0
+    H = _pull(x, a, b, length, weight, stiffness, drag)
+    if H < 0.0:
+        return False
+    Sa, Va, VaH = _lifted(H, a, weight, stiffness)
+    Sb, Vb, VbH = _lifted(H, b, weight, stiffness)
+    ground = length - (Va + Vb) / weight
+    if ground < 0.0:
+        return False
+    forces[HORIZONTAL_A], forces[HORIZONTAL_B] = max(H - drag * ground, 0.0), H
+    forces[VERTICAL_A], forces[VERTICAL_B], forces[RESTING] = -Va, Vb, ground
+    by_a, by_b = _raised(Sa, Va, weight, stiffness), _raised(Sb, Vb, weight, stiffness)
+    held, by_H, by_ground = _dragged(H, ground, drag)
+    take = by_ground / (weight * stiffness)
+    pull = np.zeros(3)
+    if H > 0.0:
+        slope = (_reach(H, Sa, Va, VaH)[1] + _reach(H, Sb, Vb, VbH)[1]) / weight
+        slope += (length - by_H) / stiffness + take * (VaH + VbH)
+        pull[0], pull[1], pull[2] = 1.0, VaH - take * by_a, VbH - take * by_b
+        pull /= slope
+    for j in range(3):
+        down = VaH * pull[j] + (by_a if j == 1 else 0.0)
+        up = VbH * pull[j] + (by_b if j == 2 else 0.0)
+        slopes[VERTICAL_A, j], slopes[VERTICAL_B, j] = -down, up
+        slopes[HORIZONTAL_B, j] = pull[j]
+        slopes[HORIZONTAL_A, j] = 0.0
+        if forces[HORIZONTAL_A] > 0.0:
+            slopes[HORIZONTAL_A, j] = pull[j] + drag * (down + up) / weight
+    return True
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _raised(S: float, V: float, weight: float, stiffness: float) -> float:
+    """dV/dh of a lifted part at a given H; none of an end that rests."""
+    return S * stiffness * weight / ((stiffness + S) * V) if V > 0.0 else 0.0

@@ -6,10 +6,14 @@ from math import sqrt
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from galerna.contract import Array
 
 from .catenary import solve
+
+Integers = NDArray[np.int64]
+Flags = NDArray[np.bool_]
 
 NEAR = 1e-9  #: of a line's length: a horizontal distance that has no direction
 
@@ -51,7 +55,7 @@ def pull(first: Array, second: Array, line: Array, friction: float, out: Array) 
 
 
 @njit(cache=True, error_model="numpy")
-def pull_all(points: Array, ends: Array, lines: Array, friction: Array, out: Array) -> None:
+def pull_all(points: Array, ends: Integers, lines: Array, friction: Array, out: Array) -> None:
     """All m lines between n ``points`` (n,3); ``ends`` (m,2), ``lines`` (m,3), ``out`` (m,6,3)."""
     for i in range(len(ends)):
         pull(points[ends[i, 0]], points[ends[i, 1]], lines[i], friction[i], out[i])
@@ -59,7 +63,7 @@ def pull_all(points: Array, ends: Array, lines: Array, friction: Array, out: Arr
 
 @njit(cache=True, error_model="numpy")
 def on_body(
-    arms: Array, nodes: Array, ends: Array, answer: Array, force: Array, moment: Array, K: Array
+    arms: Array, nodes: Flags, ends: Integers, answer: Array, force: Array, moment: Array, K: Array
 ) -> None:
     """Sum of the lines' pull on a body: force, moment about its frame and stiffness (6,6).
 

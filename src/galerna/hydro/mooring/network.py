@@ -5,16 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from galerna.contract import Array
 from galerna.errors import ConvergenceError, InputError, did_you_mean
 from galerna.turbine.platform import Mooring, MooringLine, MooringNode
 
-from .kernels import pull_all
-
-Integers = NDArray[np.int64]
-Flags = NDArray[np.bool_]
+from .kernels import Flags, Integers, pull_all
 
 LARGEST_STRAIN = 0.05  #: of a line where the platform was described
 ON_THE_SEABED = 1e-3  #: of the water depth, within which an end lies on it
