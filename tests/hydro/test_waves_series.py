@@ -92,7 +92,7 @@ def test_a_step_costs_the_same_for_ten_thousand_frequencies():
 
 
 def test_waves_off_the_grid_are_refused():
-    with pytest.raises(InputError, match="multiples of 0.0628319 rad/s"):
+    with pytest.raises(InputError, match=r"multiples of 0\.0628319 rad/s"):
         Sea(np.array([0.5]), np.zeros(1), np.ones(1, complex), 100.0, 50.0)
 
 
@@ -136,7 +136,7 @@ def test_elevations_that_cannot_be_used_are_refused(times, duration, message):
 def test_files_that_hold_something_else_are_refused(tmp_path):
     path = tmp_path / "waves.csv"
     path.write_text("0 1\n1 2\n2 x\n")
-    with pytest.raises(InputError, match="line 3.*found '2 x'"):
+    with pytest.raises(InputError, match=r"line 3.*found '2 x'"):
         read_elevation(path)
     with pytest.raises(InputError, match="cannot be read"):
         read_elevation(tmp_path / "none.csv")
