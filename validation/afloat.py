@@ -59,8 +59,8 @@ def openfast_decay(case: str) -> dict[str, Array]:
 
 def turning_points(time: Array, values: Array) -> tuple[Array, Array]:
     """Times and values of the extremes of a swing, each by the parabola through three samples."""
-    slope = np.diff(values)
-    at = 1 + np.flatnonzero(slope[1:] * slope[:-1] < 0.0)
+    rises = np.diff(values) > 0.0
+    at = 1 + np.flatnonzero(rises[1:] != rises[:-1])
     before, here, after = values[at - 1], values[at], values[at + 1]
     bend = before - 2.0 * here + after
     shift = 0.5 * (before - after) / bend

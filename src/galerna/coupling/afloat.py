@@ -25,7 +25,7 @@ from galerna.hydro.drag import ViscousDrag
 from galerna.hydro.files import read_database
 from galerna.hydro.hull import build_hull
 from galerna.hydro.hydrostatics import NonlinearBuoyancy
-from galerna.hydro.mooring import mooring_loads
+from galerna.hydro.lines import mooring_loads
 from galerna.hydro.platform_options import PlatformOptions
 from galerna.hydro.potential_flow import PotentialFlow
 from galerna.hydro.sea_options import SeaOptions
