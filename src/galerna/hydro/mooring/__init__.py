@@ -9,15 +9,22 @@ from galerna.hydro.strips import Carrier
 from galerna.hydro.waves import Sea
 from galerna.turbine.platform import Mooring
 
-from .catenary import catenary
-from .model import QuasiStaticLines
+from .catenary import Catenary, catenary
+from .model import MooringLines
 from .network import Network
 
-__all__ = ["Network", "QuasiStaticLines", "catenary", "mooring_loads"]
+__all__ = ["Catenary", "MooringLines", "Network", "catenary", "mooring_loads"]
 
 
 def mooring_loads(
     mooring: Mooring, sea: Sea, kind: Literal["quasi_static", "dynamic"], carrier: Carrier
 ) -> LoadModel:
-    """The lines of a platform in a sea, at rest or moving."""
-    return QuasiStaticLines(mooring, carrier, sea.depth, sea.density, sea.gravity)
+    """The lines of a platform in a sea: catenaries at rest, or MoorDyn's (extra moordyn).
+
+    Raises InputError for lines that cannot be, or where MoorDyn is not there.
+    """
+    if kind == "dynamic":
+        from .moordyn import DynamicLines
+
+        return DynamicLines(mooring, carrier, sea.depth, sea.density, sea.gravity)
+    return MooringLines(mooring, carrier, sea.depth, sea.density, sea.gravity)

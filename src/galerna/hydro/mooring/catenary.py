@@ -70,7 +70,8 @@ def catenary(
     rests = height is not None
     low = 0.0 if height is None else height
     solve(distance, low, low + rise, length, weight, stiffness, friction, rests, forces, slopes)
-    return Catenary(*forces.tolist(), slopes)
+    low_H, low_V, high_H, high_V, resting = forces.tolist()
+    return Catenary(low_H, low_V, high_H, high_V, resting, slopes)
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
@@ -271,7 +272,7 @@ def _lie(
     forces[HORIZONTAL_A], forces[HORIZONTAL_B] = max(H - drag * ground, 0.0), H
     forces[VERTICAL_A], forces[VERTICAL_B], forces[RESTING] = -Va, Vb, ground
     by_a, by_b = _raised(Sa, Va, weight, stiffness), _raised(Sb, Vb, weight, stiffness)
-    held, by_H, by_ground = _dragged(H, ground, drag)
+    _, by_H, by_ground = _dragged(H, ground, drag)
     take = by_ground / (weight * stiffness)
     pull = np.zeros(3)
     if H > 0.0:

@@ -1,4 +1,4 @@
-"""Mooring lines at rest as a load on the platform."""
+"""Mooring lines as a load on the platform: elastic catenaries in balance at every moment."""
 
 from __future__ import annotations
 
@@ -10,30 +10,89 @@ import numpy as np
 from galerna.contract import Array, Channel, Loads, Motion, Stations
 from galerna.hydro.strips import Carrier
 from galerna.turbine.platform import Mooring
+from galerna.units import STANDARD_GRAVITY
 
-from .kernels import on_body
-from .network import Network
+from .catenary import RESTING
+from .lines import on_body, tensions
+from .network import SEA_WATER, Found, Network
 
-ALONG_LINES = ("mooring_line",)
+_LINES = ("mooring_line",)
 CHANNELS = (
-    Channel("fairlead_tension", "N", "tension of the line's end at the platform", ALONG_LINES,
-            "FairTen{mooring_line}", "N"),
-    Channel("anchor_tension", "N", "tension of the line's other end", ALONG_LINES,
-            "AnchTen{mooring_line}", "N"),
-    Channel("grounded_length", "m", "length of the line on the seabed", ALONG_LINES),
+    Channel("fairlead_tension", "N", "tension of a line's end at the platform", _LINES,
+            "FAIRTEN{node}", "N"),
+    Channel("anchor_tension", "N", "tension of a line's other end", _LINES,
+            "ANCHTEN{node}", "N"),
+    Channel("grounded_length", "m", "length of a line on the seabed", _LINES),
     *(
-        Channel(f"mooring_{kind}_{axis}", unit, f"{text} {axis} of all lines on the platform")
+        Channel(f"mooring_{kind}_{axis}", unit, f"{text} {axis} of lines and yaw spring")
         for kind, unit, text in (("force", "N", "force along"), ("moment", "N m", "moment about"))
         for axis in "xyz"
     ),
 )  # fmt: skip
 
 
-class QuasiStaticLines:
-    """Elastic catenaries in balance with the fairleads' places, and a torsion spring about z.
+class Fairleads:
+    """Where a body carries the fairleads of a network, and the yaw spring between it and the earth.
 
-    ``depth`` m of water of ``density`` kg/m3. The lines act on the frame of ``carrier`` that is
-    nearest to their fairleads' mean height. Neither inertia nor drag: Jonkman (2007).
+    All of them ride on the one frame of ``carrier`` that is nearest to their mean height.
+    """
+
+    def __init__(self, network: Network, carrier: Carrier) -> None:
+        self.network = network
+        places = network.points[network.vessel]
+        height = places[:, 2].mean() if len(places) else 0.0
+        frame = int(np.abs(carrier.position[:, 2] - height).argmin())
+        span = carrier.stations.span[frame : frame + 1]
+        self.stations = (Stations(carrier.stations.part, span),)
+        #: the frame as described, and the fairleads in its axes
+        self.place, self.axes = carrier.position[frame], carrier.rotation[frame]
+        self._arms = (places - self.place) @ self.axes
+        self._yaw_stiffness = network.mooring.yaw_stiffness
+
+    def points(self, motion: Motion, start: Array) -> Array:
+        """All points (n,3) m: fairleads where the frame is, the others as at ``start``."""
+        points = start.copy()
+        points[self.network.vessel] = motion.position[0] + self._arms @ motion.rotation[0].T
+        return points
+
+    def velocity(self, motion: Motion) -> Array:
+        """Velocities (k,3) m/s of the fairleads."""
+        arms = self._arms @ motion.rotation[0].T
+        return np.asarray(motion.velocity[0] + np.cross(motion.angular_velocity[0], arms))
+
+    def loads(self, motion: Motion, found: Found) -> Loads:
+        """Force, moment and stiffness about the frame's origin, with the yaw spring's."""
+        force, moment, stiffness = np.zeros((1, 3)), np.zeros((1, 3)), np.zeros((1, 6, 6))
+        on_body(
+            found.points, self.network.vessel, found.force, found.stiffness, motion.position[0],
+            force[0], moment[0], stiffness[0],
+        )  # fmt: skip
+        if self._yaw_stiffness:
+            self._turn_back(motion.rotation[0], moment[0], stiffness[0])
+        return Loads(force, moment, stiffness)
+
+    def _turn_back(self, R: Array, moment: Array, stiffness: Array) -> None:
+        """The yaw spring, eq. (17): yaw is the heading of the platform's x axis."""
+        x, y, z = R @ self.axes[0]
+        moment[2] -= self._yaw_stiffness * atan2(y, x)
+        stiffness[5, 3:] += self._yaw_stiffness * np.array(
+            [-x * z / (x * x + y * y), -y * z / (x * x + y * y), 1.0]
+        )
+
+
+def standing(fairleads: Fairleads) -> Motion:
+    """The frame that carries the fairleads, at rest where it was described."""
+    motion = Motion.at_rest(1)
+    motion.position[0], motion.rotation[0] = fairleads.place, fairleads.axes
+    return motion
+
+
+class MooringLines:
+    """Elastic catenaries that are at rest wherever the platform is (Jonkman, 2007), and a spring.
+
+    ``depth`` m of water of ``density`` kg/m3; ``carrier`` is what the fairleads ride on. The
+    lines have no inertia, drag or damping. Loads and the moment's channels are about the
+    frame's origin. Raises InputError for a mooring that cannot be, with the figures.
     """
 
     channels: tuple[Channel, ...] = CHANNELS
@@ -44,85 +103,75 @@ class QuasiStaticLines:
         mooring: Mooring,
         carrier: Carrier,
         depth: float,
-        density: float = 1025.0,
-        gravity: float = 9.80665,
+        density: float = SEA_WATER,
+        gravity: float = STANDARD_GRAVITY,
     ) -> None:
         self.network = Network.of(mooring, depth, density, gravity)
-        network = self.network
-        self._yaw_stiffness = mooring.yaw_stiffness
-        height = network.points[network.vessel, 2].mean() if network.vessel.any() else 0.0
-        frame = int(np.abs(carrier.position[:, 2] - height).argmin())
-        part, span = carrier.stations.part, carrier.stations.span
-        self.stations: tuple[Stations, ...] = (Stations(part, span[frame : frame + 1]),)
-        self._turned = carrier.rotation[frame]  # the frame's axes in the platform as described
-        self._arms = (network.points - carrier.position[frame]) @ self._turned
-        self._arms[~network.vessel] = 0.0
-        self._points = network.points.copy()
-        self._fairlead = np.where(network.vessel[network.ends[:, 1]], 1, 0)
-        numbers = np.arange(1.0, len(network.names) + 1.0)
-        self.coordinates: Mapping[str, Array] = {"mooring_line": numbers}
-        self._trial = self._shown = np.zeros((len(numbers), 6, 3)), np.zeros(6)
+        self.fairleads = Fairleads(self.network, carrier)
+        self.stations: tuple[Stations, ...] = self.fairleads.stations
+        self.coordinates = coordinates(self.network)
+        self._start = self.network.at(self.network.points).points
+        self._moved, self._total = self._found(standing(self.fairleads)), np.zeros(6)
+        self._shown = self._moved, self._total
 
     def begin_step(self, time: float, dt: float, motion: Motion) -> None:
         """Nothing to prepare."""
 
+    def _found(self, motion: Motion) -> Found:
+        return self.network.at(self.fairleads.points(motion, self._start))
+
     def loads(self, time: float, motion: Motion) -> Loads:
         """Force, moment and stiffness of all lines about the frame's origin."""
-        network, R = self.network, motion.rotation[0]
-        arms = self._arms @ R.T
-        vessel = network.vessel
-        points = self._points.copy() if network.free.any() else self._points
-        points[vessel] = motion.position[0] + arms[vessel]
-        answer = network.solve(points)
-        force, moment, K = np.zeros((1, 3)), np.zeros((1, 3)), np.zeros((1, 6, 6))
-        on_body(arms, vessel, network.ends, answer, force[0], moment[0], K[0])
-        if network.free.any():
-            self._condense(K[0], arms, answer)
-        if self._yaw_stiffness:
-            ahead = R @ self._turned[0]  # the x axis of the platform as described
-            moment[0, 2] -= self._yaw_stiffness * atan2(ahead[1], ahead[0])
-            K[0, 5, 5] += self._yaw_stiffness
-        self._trial = answer, np.concatenate([force[0], moment[0]])
-        return Loads(force, moment, K)
-
-    def _condense(self, K: Array, arms: Array, answer: Array) -> None:
-        """Let the connections follow: take what they give from the stiffness (6,6)."""
-        stiff, own = self.network.condensed(answer)
-        held = self.network.assembled(answer, own)[1]
-        carry = np.zeros((3 * len(own), 6))
-        for i, node in enumerate(own):
-            x, y, z = arms[node]
-            carry[3 * i : 3 * i + 3, :3] = np.eye(3)
-            carry[3 * i : 3 * i + 3, 3:] = [[0, z, -y], [-z, 0, x], [y, -x, 0]]
-        K -= carry.T @ (held - stiff) @ carry
+        self._moved = self._found(motion)
+        loads = self.fairleads.loads(motion, self._moved)
+        self._total = np.concatenate([loads.force[0], loads.moment[0]])
+        return loads
 
     def end_step(self, time: float, motion: Motion) -> None:
-        """Keep the tensions of the last ``loads`` for the record."""
-        self._shown = self._trial
+        """Keep the lines of the last ``loads``; the connections' next search starts there."""
+        self._shown = self._moved, self._total
+        self._start = self._moved.points
 
     def record(self) -> Mapping[str, float | Array]:
         """The channels of the accepted step."""
-        answer, total = self._shown
-        lines, tension = np.arange(len(answer)), answer[:, 5, :2]
-        columns = (
-            tension[lines, self._fairlead],
-            tension[lines, 1 - self._fairlead],
-            answer[:, 5, 2].copy(),
-            *total.tolist(),
-        )
-        return dict(zip((channel.name for channel in CHANNELS), columns, strict=True))
+        found, total = self._shown
+        anchor, fairlead = tensions(found.lines)
+        return channel_values(fairlead, anchor, found.lines[:, RESTING].copy(), total)
 
     def state(self) -> dict[str, np.ndarray]:
-        """Empty: the next step depends on nothing of the last."""
-        return {}
+        """Where the search for the connections' rest starts; the lines themselves need none."""
+        return {"connections": self._start[self.network.free]}
 
     def restore(self, state: Mapping[str, np.ndarray]) -> None:
-        """Nothing to take back."""
+        """Take back what ``state`` gave."""
+        self._start = self._start.copy()
+        self._start[self.network.free] = state["connections"]
+
+    def hanging_weight(self, motion: Motion) -> float:
+        """Weight N of the lines in water that hangs on the platform where it is."""
+        found = self._found(motion)
+        return float(-found.force[self.network.vessel, 2].sum())
 
     def describe(self, motion: Motion) -> Iterator[str]:
-        """Tension and length on the seabed of each line while the platform rests."""
-        self.loads(0.0, motion)
-        answer, _ = self._trial
-        tension = answer[np.arange(len(answer)), 5, self._fairlead]
-        for name, pull, length in zip(self.network.names, tension, answer[:, 5, 2], strict=True):
-            yield f"{name}: {pull / 1e3:.4g} kN at the platform, {length:.4g} m on the seabed"
+        """Tensions of the lines, and what hangs on the platform, where it rests."""
+        found = self._found(motion)
+        both = zip(self.network.names, *tensions(found.lines), found.lines[:, RESTING], strict=True)
+        for name, anchor, fairlead, rests in both:
+            yield (
+                f"{name}: {fairlead / 1e3:.4g} kN at the platform, {anchor / 1e3:.4g} kN at the "
+                f"other end, {rests:.4g} m on the seabed"
+            )
+        yield f"{self.hanging_weight(motion) / 1e3:.5g} kN of lines hang on the platform"
+
+
+def coordinates(network: Network) -> Mapping[str, Array]:
+    """The lines' numbers, from 1."""
+    return {"mooring_line": np.arange(1.0, len(network.ends) + 1.0)}
+
+
+def channel_values(
+    fairlead: Array, anchor: Array, resting: Array, total: Array
+) -> Mapping[str, float | Array]:
+    """Values by channel: tensions N and lengths m (m,), force and moment (6,)."""
+    columns = (fairlead, anchor, resting, *total.tolist())
+    return dict(zip((channel.name for channel in CHANNELS), columns, strict=True))

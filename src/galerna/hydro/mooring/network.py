@@ -1,4 +1,10 @@
-"""Anchors, lines, fairleads and the free connections between them, at rest."""
+"""Anchors, fairleads, and the free connections that lines hold between them, at rest.
+
+The energy of lines, weights and buoys is a convex function of where the connections are (but
+for friction), so Newton's method with steps that do not run up the other side finds their rest.
+Lines may lie on the seabed in their middle, without friction there; friction acts where a line
+rests as far as an anchor on the seabed. Lines pass through each other and through the surface.
+"""
 
 from __future__ import annotations
 
@@ -7,161 +13,161 @@ from dataclasses import dataclass
 import numpy as np
 
 from galerna.contract import Array
-from galerna.errors import ConvergenceError, InputError, did_you_mean
-from galerna.turbine.platform import Mooring, MooringLine, MooringNode
+from galerna.errors import ConvergenceError
+from galerna.turbine.platform import LineType, Mooring, MooringNode
+from galerna.units import STANDARD_GRAVITY
 
-from .kernels import Flags, Integers, pull_all
+from .checks import ON_THE_SEABED, check_mooring, check_spans
+from .lines import Integers, add_own, assemble
 
-LARGEST_STRAIN = 0.05  #: of a line where the platform was described
-ON_THE_SEABED = 1e-3  #: of the water depth, within which an end lies on it
-NEWTON_STEPS, BALANCED = 200, 1e-9  #: of the connections; of the largest force
+SEA_WATER = 1025.0  #: kg/m3, in which line types' weights are given
+STEPS, HALVES, BALANCED = 200, 40, 1e-11  #: the last is a share of the largest force
+LONGEST_STEP = 0.2  #: of the longest line
+SINKS = 0.01  #: m, how deep a connection sinks into the seabed under all that it may carry
+_RANK = {"fixed": 0, "connection": 1, "vessel": 2}
+
+
+@dataclass(frozen=True, eq=False)
+class Found:
+    """A network at rest: ``points`` (n,3) m, ``force`` (n,3) N of lines, and of each line what
+    ``catenary.solve`` fills, (m,5). ``stiffness`` (3n,3n) N/m is with the connections following."""
+
+    points: Array
+    lines: Array
+    force: Array
+    stiffness: Array
 
 
 @dataclass(frozen=True, eq=False)
 class Network:
-    """n points and m lines: ``points`` (n,3) m as described, ``ends`` (m,2), ``lines`` (m,3).
+    """n points and m lines. ``points`` (n,3) m as described; ``ends`` (m,2) of each line, the
+    anchor's side first; ``figures`` (m,4) of lines and ``own`` (n,4) of points as in ``lines``.
+    ``vessel`` (k,) and ``free`` (c,) number fairleads and connections."""
 
-    ``lines`` hold length m, EA N and weight N/m, ``friction`` (m,) that of the seabed or -1 for
-    lines that hang free. ``vessel`` and ``free`` (n,) mark fairleads and connections, ``load``
-    (n,3) N is their own weight less their buoyancy.
-    """
-
-    names: tuple[str, ...]
+    mooring: Mooring
+    depth: float
     points: Array
     ends: Integers
-    lines: Array
-    friction: Array
-    vessel: Flags
-    free: Flags
-    load: Array
+    figures: Array
+    own: Array
+    vessel: Integers
+    free: Integers
 
     @classmethod
-    def of(cls, mooring: Mooring, depth: float, density: float, gravity: float) -> Network:
-        """The network of a mooring in water; InputError for lines that cannot be."""
-        names = [node.name for node in mooring.nodes]
-        _check(mooring, depth)
-        points = np.array([node.position for node in mooring.nodes], dtype=float)
-        ends = np.array([[names.index(e) for e in (line.first, line.second)]
-                         for line in mooring.lines], dtype=np.int64)  # fmt: skip
-        kinds = np.array([node.kind for node in mooring.nodes])
-        rests = np.array([_rests(node, depth) for node in mooring.nodes])
-        load = np.zeros_like(points)
-        load[:, 2] = [
-            gravity * (density * node.volume - node.mass) if node.kind == "connection" else 0.0
-            for node in mooring.nodes
-        ]
-        lines = np.array(
-            [[line.length, line.line_type.stiffness, line.line_type.weight]
-             for line in mooring.lines]
-        )  # fmt: skip
-        friction = np.where(rests[ends].any(axis=1), mooring.seabed_friction, -1.0)
-        network = cls(
-            tuple(line.name for line in mooring.lines), points, ends, lines, friction,
-            kinds == "vessel", kinds == "connection", load,
-        )  # fmt: skip
+    def of(
+        cls,
+        mooring: Mooring,
+        depth: float,
+        density: float = SEA_WATER,
+        gravity: float = STANDARD_GRAVITY,
+    ) -> Network:
+        """The network in water of a depth m, its connections at rest. Raises InputError."""
+        check_mooring(mooring, depth)
+        kinds = [node.kind for node in mooring.nodes]
+        number = {node.name: i for i, node in enumerate(mooring.nodes)}
+        ends = np.array(
+            [
+                sorted((number[line.first], number[line.second]), key=lambda i: _RANK[kinds[i]])
+                for line in mooring.lines
+            ],
+            dtype=np.int64,
+        ).reshape(-1, 2)
+        points = np.array([node.position for node in mooring.nodes], dtype=float).reshape(-1, 3)
+        anchored = np.array([_rests(mooring.nodes[first], depth) for first, _ in ends], dtype=bool)
+        for first, _ in ends[anchored]:
+            points[first, 2] = -depth
+        figures = [
+            (line.length, weight_in_water(line.line_type, density, gravity),
+             line.line_type.stiffness, mooring.seabed_friction * rests)
+            for line, rests in zip(mooring.lines, anchored, strict=True)
+        ]  # fmt: skip
+        lines = np.array(figures).reshape(-1, 4)
+        carried = np.abs(lines[:, 0] * lines[:, 1]).sum()
+        own = np.array([_own(node, carried, density, gravity) for node in mooring.nodes])
+        vessel, free = (np.flatnonzero([k == kind for k in kinds]).astype(np.int64)
+                        for kind in ("vessel", "connection"))  # fmt: skip
+        network = cls(mooring, depth, points, ends, lines, own.reshape(-1, 4), vessel, free)
+        check_spans(mooring, network.at(points).points, ends)
         return network
 
-    def solve(self, points: Array) -> Array:
-        """Forces, stiffness, tensions (m,6,3) of all lines (``kernels.pull``).
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The lines' names."""
+        return tuple(line.name for line in self.mooring.lines)
 
-        ``points`` (n,3) m; those of the connections are moved to where they rest.
+    def at(self, points: Array) -> Found:
+        """The network with anchors and fairleads at ``points`` (n,3) m; connections start there.
+
+        Raises ConvergenceError where these find no rest.
         """
-        answer = np.zeros((len(self.ends), 6, 3))
-        pull_all(points, self.ends, self.lines, self.friction, answer)
-        if self.free.any():
-            self._settle(points, answer)
-        return answer
+        points, n = points.copy(), len(points)
+        found, force, K = np.zeros((len(self.ends), 5)), np.zeros((n, 3)), np.zeros((3 * n, 3 * n))
+        assemble(points, self.ends, self.figures, self.depth, found, force, K)
+        if len(self.free):
+            self._settle(points, found, force, K)
+            K = self._condensed(K)
+        return Found(points, found, force, K)
 
-    def _settle(self, points: Array, answer: Array) -> None:
-        """Newton's method for the connections, each step halved until the forces fall."""
-        free = np.flatnonzero(self.free)
-        residual, stiffness = self.assembled(answer, free)
-        for _ in range(NEWTON_STEPS):
-            size = np.abs(residual).max()
-            if size <= BALANCED * max(np.abs(answer[:, :2]).max(), 1.0):
+    def _settle(self, points: Array, found: Array, force: Array, K: Array) -> None:
+        """Move the connections to where they rest, and fill the others for that."""
+        free, reach = self.free, LONGEST_STEP * self.figures[:, 0].max()
+        residual, stiffness = self._on_connections(points, force, K)
+        for _ in range(STEPS):
+            size = float(np.abs(residual).max())
+            if size <= BALANCED * max(np.abs(found).max(), 1.0):
                 return
-            step = np.linalg.lstsq(stiffness, residual, rcond=1e-12)[0].reshape(-1, 3)
-            start = points[free].copy()
-            for share in 0.5 ** np.arange(12):
-                points[free] = start + share * step
-                pull_all(points, self.ends, self.lines, self.friction, answer)
-                residual, stiffness = self.assembled(answer, free)
-                if np.abs(residual).max() < size:
+            stiffness += 1e-9 * stiffness.diagonal().max() * np.eye(len(stiffness))
+            step = np.linalg.solve(stiffness, residual)
+            step *= min(1.0, reach / np.abs(step).max())
+            start, work = points[free], float(residual @ step)
+            for half in range(HALVES):
+                points[free] = start + 0.5**half * step.reshape(-1, 3)
+                assemble(points, self.ends, self.figures, self.depth, found, force, K)
+                residual, stiffness = self._on_connections(points, force, K)
+                if float(residual @ step) >= -0.5 * work:
                     break
-        raise ConvergenceError(
-            "mooring", f"the connections find no rest: {size:.3g} N are left over",
-            "start them nearer to where they hang, in the turbine's file",
-        )  # fmt: skip
+        if size > 1e-7 * max(np.abs(found).max(), 1.0):
+            raise ConvergenceError(
+                "mooring",
+                f"the free connections find no rest: {size:.3g} N are left over",
+                "look for a buoy or weight that nothing holds, and for lines too short to reach",
+            )
 
-    def assembled(self, answer: Array, nodes: Integers) -> tuple[Array, Array]:
-        """Forces (3k,) on k points and their stiffness (3k,3k), the others held."""
-        place = {int(node): 3 * i for i, node in enumerate(nodes)}
-        force, K = self.load[nodes].ravel().copy(), np.zeros((3 * len(nodes), 3 * len(nodes)))
-        for i, (a, b) in enumerate(self.ends.tolist()):
-            block = answer[i, 2:5]
-            for side, node in enumerate((a, b)):
-                if node in place:
-                    at = slice(place[node], place[node] + 3)
-                    force[at] += answer[i, side]
-                    K[at, at] += block
-            if a in place and b in place:
-                first, second = place[a], place[b]
-                K[first : first + 3, second : second + 3] -= block
-                K[second : second + 3, first : first + 3] -= block
-        return force, K
+    def _on_connections(self, points: Array, force: Array, K: Array) -> tuple[Array, Array]:
+        """Force (3c,) and stiffness (3c,3c) of the connections, with what is their own in ``K``."""
+        own = force[self.free].copy()
+        for i, node in enumerate(self.free):
+            up, stiff = add_own(points[node, 2], self.own[node], self.depth)
+            own[i, 2] += up
+            K[3 * node + 2, 3 * node + 2] += stiff
+        at = self._rows(self.free)
+        return own.ravel(), K[np.ix_(at, at)]
 
-    def condensed(self, answer: Array) -> tuple[Array, Integers]:
-        """Stiffness (3k,3k) of the vessel's k points with the connections free, and their order."""
-        own, free = np.flatnonzero(self.vessel), np.flatnonzero(self.free)
-        _, K = self.assembled(answer, np.concatenate([own, free]))
-        n = 3 * len(own)
-        if len(free):
-            inner = np.linalg.lstsq(K[n:, n:], K[n:, :n], rcond=1e-12)[0]
-            K = K[:n, :n] - K[:n, n:] @ inner
-        return np.asarray(K[:n, :n]), own
+    def _condensed(self, K: Array) -> Array:
+        """The stiffness of the other points where the connections follow them; eq. (16)."""
+        at = self._rows(self.free)
+        inner = K[np.ix_(at, at)]
+        inner += 1e-9 * inner.diagonal().max() * np.eye(len(at))
+        return np.asarray(K - K[:, at] @ np.linalg.solve(inner, K[at]))
+
+    @staticmethod
+    def _rows(nodes: Integers) -> Integers:
+        return (3 * nodes[:, None] + np.arange(3)).ravel()
+
+
+def weight_in_water(kind: LineType, density: float, gravity: float) -> float:
+    """Weight N/m of a line; its own where density and gravity are the usual ones."""
+    area = 0.25 * np.pi * kind.diameter**2
+    other = kind.mass * (gravity - STANDARD_GRAVITY)
+    return float(kind.weight + other - area * (density * gravity - SEA_WATER * STANDARD_GRAVITY))
 
 
 def _rests(node: MooringNode, depth: float) -> bool:
-    return bool(abs(node.position[2] + depth) <= ON_THE_SEABED * depth)
+    return bool(node.kind == "fixed" and node.position[2] <= -depth + ON_THE_SEABED)
 
 
-def _check(mooring: Mooring, depth: float) -> None:
-    names = [node.name for node in mooring.nodes]
-    if not depth > 0.0:
-        raise InputError("mooring", "the water depth is not known", "give sea.water_depth_m")
-    for node in mooring.nodes:
-        if node.position[2] < -depth * (1.0 + ON_THE_SEABED):
-            raise InputError(
-                f"mooring, node {node.name!r}",
-                f"it stands {-node.position[2]:g} m below still water, the seabed {depth:g} m",
-                "check its height and the water depth",
-            )
-    for line in mooring.lines:
-        for end in (line.first, line.second):
-            if end not in names:
-                raise InputError(
-                    f"mooring, line {line.name!r}", f"there is no node {end!r}",
-                    did_you_mean(end, names),
-                )  # fmt: skip
-        _check_line(line, mooring)
-
-
-def _check_line(line: MooringLine, mooring: Mooring) -> None:
-    where = f"mooring, line {line.name!r}"
-    if not (line.length > 0.0 and line.line_type.stiffness > 0.0):
-        raise InputError(
-            where,
-            f"its length {line.length:g} m and EA {line.line_type.stiffness:g} N must be positive",
-        )
-    first, second = (mooring.node(name) for name in (line.first, line.second))
-    if "connection" in (first.kind, second.kind):
-        return
-    span = float(np.linalg.norm(np.subtract(second.position, first.position)))
-    strain = span / line.length - 1.0
-    if strain > LARGEST_STRAIN:
-        raise InputError(
-            where,
-            f"it is {line.length:g} m long and must span {span:.4g} m: it would stretch by "
-            f"{strain:.1%}",
-            f"a line of about {span:.4g} m would reach",
-        )
+def _own(node: MooringNode, carried: float, density: float, gravity: float) -> Array:
+    """Weight, buoyancy, radius and seabed of a connection."""
+    weight, buoyancy = node.mass * gravity, node.volume * density * gravity
+    radius = np.cbrt(0.75 * node.volume / np.pi)
+    return np.array([weight, buoyancy, radius, (carried + weight) / SINKS])
