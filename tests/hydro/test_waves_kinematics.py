@@ -148,6 +148,21 @@ def test_stretched_profiles_above_and_below_the_still_water(depth):
         assert from_columns(columns["wheeler"], -5.0, t) == pytest.approx(value, abs=3e-3 * scale)
 
 
+def test_ten_thousand_frequencies_need_few_levels_and_little_memory():
+    band = Band(0.3, 2.0 * np.pi * 1e4 / 3600.0, 3600.0)
+    w, course, a = irregular(lambda w: jonswap(w, 6.0, 10.0, 2.9), band, seed=7)
+    sea = Sea(w, course, a, band.period, 320.0)
+    columns = water_columns(sea, np.zeros((1, 2)), np.zeros(1), np.array([-130.0]))
+    assert columns.layout[0, 1] <= 32
+    assert columns.series.table.nbytes < 30e6
+
+
+def test_water_without_waves_at_its_depth_stands_still():
+    sea = Sea.regular(0.1, 0.8, 4000.0)
+    columns = water_columns(sea, np.zeros((1, 2)), np.array([-900.0]), np.array([-950.0]))
+    assert not from_columns(columns, -920.0, 0.3).any()
+
+
 def test_water_ends_at_the_elevation_or_without_stretching_at_the_still_water():
     sea = short_crested()
     for name, expected in (("none", 0.0), ("wheeler", sea.elevation_at().at(50.0)[0])):

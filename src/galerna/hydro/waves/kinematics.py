@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -17,8 +19,8 @@ STRETCHINGS = ("none", "vertical", "extrapolation", "wheeler")
 _NONE, _VERTICAL, _EXTRAPOLATION, _WHEELER = range(4)
 
 _TOLERANCE = 1e-3  #: error between levels over the standard deviation at the uppermost one
-_SCALE = 4.0  #: m below the still water where levels stand twice as far apart as at it
-_COUNTS = (4, 6, 8, 11, 16, 23, 32, 45, 64)  #: of levels, of which the fewest that do are taken
+_SCALES = (4.0, 1.0, 0.25)  #: m below z = 0 where levels may stand twice as far apart as there
+_COUNTS = (4, 6, 8, 11, 16, 23, 32, 45, 64, 90)  #: of levels; the fewest that do are taken
 
 
 def profiles(sea: Sea, height: ArrayLike) -> tuple[Array, Array]:
@@ -63,8 +65,8 @@ class WaterColumns:
 
     A row of ``series`` holds for each column the elevation, for ``extrapolation`` the
     velocity's slope over z at the still water, and the velocities at the column's levels. These
-    are even in s = log(1 - z / 4 m); between them goes a cubic. ``layout`` (c,4): first column
-    of the table, number of levels, s of the uppermost, step of s.
+    are even in s = log(1 - z / scale); between them goes a cubic. ``layout`` (c,5): first
+    column of the table, number of levels, s of the uppermost, step of s, scale m.
     """
 
     series: Series
@@ -85,48 +87,66 @@ def water_columns(
         hint = did_you_mean(stretching, STRETCHINGS)
         raise InputError("sea.stretching", f"{stretching!r} is not known", hint)
     mode = STRETCHINGS.index(stretching)
-    levels = [_levels(sea, top, bottom) for top, bottom in zip(tops, bottoms, strict=True)]
-    extra = 2 if mode == _EXTRAPOLATION else 1
-    widths = [3 * (len(s) + extra) - 2 for s in levels]
-    first = np.cumsum([0, *widths])
+    spans = list(zip(tops.tolist(), bottoms.tolist(), strict=True))
+    found = {span: _levels(sea, *span) for span in set(spans)}
+    levels = [found[span] for span in spans]
+    extra = 4 if mode == _EXTRAPOLATION else 1
+    first = np.cumsum([0, *(3 * len(level.s) + extra for level in levels)])
     samples = sea.samples(_fastest(sea, float(np.max(tops, initial=-np.inf))))
     table = np.empty((samples, first[-1]), dtype=np.float32)
-    for column, (place, s) in enumerate(zip(places, levels, strict=True)):
-        spectrum = sea.amplitude[:, None] * _column_transfer(sea, place, s, mode)
+    for column, (place, level) in enumerate(zip(places, levels, strict=True)):
+        spectrum = sea.amplitude[:, None] * _column_transfer(sea, place, level, mode)
         table[:, first[column] : first[column + 1]] = tabulate(spectrum, sea.order, samples)
-    layout = np.array([[f, len(s), s[0], s[1] - s[0]] for f, s in zip(first, levels, strict=False)])
-    return WaterColumns(
-        Series(table, sea.period / samples, sea.ramp), layout.reshape(-1, 4), mode, sea.depth
-    )
+    rows = [[f, *level.layout] for f, level in zip(first, levels, strict=False)]
+    layout = np.array(rows, dtype=float).reshape(-1, 5)
+    return WaterColumns(Series(table, sea.period / samples, sea.ramp), layout, mode, sea.depth)
 
 
-def _height(s: Array) -> Array:
-    return np.asarray(-_SCALE * np.expm1(s))
+class _Levels(NamedTuple):
+    """Levels even in s (p,) = log(1 - z / scale)."""
+
+    s: Array
+    scale: float
+
+    @classmethod
+    def between(cls, top: float, bottom: float, scale: float, count: int) -> _Levels:
+        return cls(np.linspace(np.log1p(-top / scale), np.log1p(-bottom / scale), count), scale)
+
+    @property
+    def layout(self) -> tuple[float, float, float, float]:
+        return len(self.s), self.s[0], self.s[1] - self.s[0], self.scale
+
+    def height(self, s: Array) -> Array:
+        return np.asarray(-self.scale * np.expm1(s))
 
 
-def _levels(sea: Sea, top: float, bottom: float) -> Array:
-    """The fewest levels s (p,) that follow the velocity from ``top`` to ``bottom`` m."""
-    first, last = np.log1p(-top / _SCALE), np.log1p(-bottom / _SCALE)
+def _levels(sea: Sea, top: float, bottom: float) -> _Levels:
+    """The fewest levels that follow the velocity from ``top`` to ``bottom`` m.
+
+    Raises InputError where not even the most do.
+    """
     weight = np.abs(sea.amplitude * sea.frequency) ** 2
-    for count in _COUNTS:
-        s = np.linspace(first, last, count)
-        if _error_between(sea, s, weight) <= _TOLERANCE:
-            break
-    return s
+    for count, scale in product(_COUNTS, _SCALES):
+        levels = _Levels.between(top, bottom, scale, count)
+        if _error_between(sea, levels, weight) <= _TOLERANCE:
+            return levels
+    what = f"{_COUNTS[-1]} levels from {bottom:.4g} to {top:.4g} m do not resolve its short waves"
+    raise InputError("sea.waves", what, "lower highest_frequency_hz")
 
 
-def _error_between(sea: Sea, s: Array, weight: Array) -> float:
-    """Largest error halfway between levels s (p,), over the deviation at the first."""
-    if sea.is_still:
+def _error_between(sea: Sea, levels: _Levels, weight: Array) -> float:
+    """Largest error halfway between levels, over the deviation at the first."""
+    at_levels, _ = profiles(sea, levels.height(levels.s))
+    at_first = weight @ at_levels[:, 0] ** 2
+    if at_first == 0.0:
         return 0.0
-    middle = 0.5 * (s[1:] + s[:-1])
-    at_levels, _ = profiles(sea, _height(s))
-    between, _ = profiles(sea, _height(middle))
+    middle = 0.5 * (levels.s[1:] + levels.s[:-1])
+    between, _ = profiles(sea, levels.height(middle))
     for j in range(len(middle)):
-        i = min(max(j - 1, 0), len(s) - 4)
+        i = min(max(j - 1, 0), len(levels.s) - 4)
         weights = np.array(cubic(j + 0.5 - i - 1.0))
         between[:, j] -= at_levels[:, i : i + 4] @ weights
-    return float(np.sqrt((weight @ between**2).max() / (weight @ at_levels[:, 0] ** 2)))
+    return float(np.sqrt((weight @ between**2).max() / at_first))
 
 
 def _fastest(sea: Sea, top: float) -> Complex:
@@ -135,10 +155,13 @@ def _fastest(sea: Sea, top: float) -> Complex:
     return np.concatenate([np.ones_like(along), sea.frequency[:, None] * along], axis=1) + 0j
 
 
-def _column_transfer(sea: Sea, place: Array, s: Array, mode: int) -> Complex:
+def _column_transfer(sea: Sea, place: Array, levels: _Levels, mode: int) -> Complex:
     """Transfers (n, 1 + 3p or 4 + 3p) of a row's part for one column."""
-    velocity = _velocity(sea, *profiles(sea, _height(s)))
-    parts = [np.ones((len(sea.frequency), 1)), velocity.reshape(len(sea.frequency), 3 * len(s))]
+    velocity = _velocity(sea, *profiles(sea, levels.height(levels.s)))
+    parts = [
+        np.ones((len(sea.frequency), 1)),
+        velocity.reshape(len(sea.frequency), 3 * len(levels.s)),
+    ]
     if mode == _EXTRAPOLATION:
         along, upward = profiles(sea, 0.0)
         k = sea.wavenumber[:, None]
@@ -165,8 +188,8 @@ def water_velocity(
     tangent = first
     if stretching == _EXTRAPOLATION:
         first += 3
-    top, step = layout[column, 2], layout[column, 3]
-    position = min(max((np.log1p(-min(z, 0.0) / _SCALE) - top) / step, 0.0), count - 1.0)
+    top, step, scale = layout[column, 2], layout[column, 3], layout[column, 4]
+    position = min(max((np.log1p(-min(z, 0.0) / scale) - top) / step, 0.0), count - 1.0)
     i = min(max(int(position) - 1, 0), count - 4)
     w = cubic(position - i - 1.0)
     x = y = up = 0.0
