@@ -31,6 +31,7 @@ MODULES = (
     "machine_energy",
     "afloat_waves",
     "afloat_database",
+    "afloat_radiation",
 )
 
 

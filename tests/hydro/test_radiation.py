@@ -34,7 +34,7 @@ def database():
 
 @pytest.fixture(scope="module")
 def fit(database):
-    return fit_radiation(database, tolerance=0.005)
+    return fit_radiation(database)
 
 
 def random_motion(rng, times):

@@ -25,12 +25,13 @@ from .wave_rows import Rows, parameters_of, realized, residuals, rise, slopes, t
 
 COUPLED = 2e-3  #: of the root of the diagonals' product: less is no coupling
 FELT = 1e-6  #: of the largest force or moment: less is no radiation
-TOLERANCE = 0.01  #: of the largest coefficient: one more section where a fit is worse
+TOLERANCE = 0.003  #: of the largest coefficient: one more section where a fit is worse
 NOTED = 0.01  #: of the largest coefficient: a worse fit is told
 LARGEST_ERROR = 0.3  #: above it no fit is of use
 ALIKE = 0.5  #: of the tolerance, by which two sets of modes may differ that are one
 MOST_SECTIONS = 6
 FALLS = 0.8  #: of the root mean square, at least, by one more section
+RATIOS = (0.05, 20.0)  #: least and largest damping ratio of a section
 SEARCH, POLISH = 40, 200  #: evaluations of the Jacobian
 SPREADS = ((0.5, 2.0, 0.5), (0.3, 3.0, 0.7), (0.5, 2.0, 0.3))
 NEW_SECTIONS = (0.4, 1.0, 2.5)  #: frequencies over the middle one, of a section that comes new
@@ -176,12 +177,11 @@ def _solve(block: _Block, start: Rows, most: int, ends: float) -> tuple[Rows, fl
 
 
 def _bounds(rows: Rows, frequency: Array) -> tuple[Array, Array]:
-    """Least and largest parameters: sections stay within ten times the data's frequencies."""
+    """Least and largest parameters: no section rings where there are no data to say so."""
     n, whole = rows.a.size, parameters_of(rows).size
-    low, high = np.log(0.1 * frequency[0]), np.log(10.0 * frequency[-1])
     least, bound = np.full(whole, -np.inf), np.full(whole, np.inf)
-    least[:n], least[n : 2 * n] = 2.0 * low, low
-    bound[:n], bound[n : 2 * n] = 2.0 * high, high
+    least[:n], bound[:n] = np.log(frequency[0]), np.log(frequency[-1])
+    least[n : 2 * n], bound[n : 2 * n] = np.log(RATIOS)
     return least, bound
 
 

@@ -34,16 +34,17 @@ class Rows(NamedTuple):
 
 @njit(cache=True, error_model="numpy")
 def unpacked(parameters: Array, r: int, q: int, m: int) -> tuple[Array, Array, Array]:
-    """a, b and G of free parameters: logarithms of a and b, then of G what m(0) = 0 leaves.
+    """a, b and G of free parameters.
 
-    m(0) is the sum of ``(b g0 + g1) / a`` over the sections, so g1 = a y - b g0 where the y of
-    all sections sum to zero.
+    First come the logarithms of the sections' frequencies sqrt(a) and of their damping ratios
+    b / (2 sqrt(a)), then of G what m(0) = 0 leaves. m(0) is the sum of ``(b g0 + g1) / a`` over
+    the sections, so g1 = a y - b g0 where the y of all sections sum to zero.
     """
     a, b, G = np.empty((r, q)), np.empty((r, q)), np.empty((r, 2 * q, m))
     for i in range(r):
         for k in range(q):
-            a[i, k] = exp(parameters[i * q + k])
-            b[i, k] = exp(parameters[(r + i) * q + k])
+            own = exp(parameters[i * q + k])
+            a[i, k], b[i, k] = own**2, 2.0 * own * exp(parameters[(r + i) * q + k])
         for j in range(m):
             last = 0.0
             for k in range(q):
@@ -60,7 +61,8 @@ def parameters_of(rows: Rows) -> Array:
     a, b, G = rows.a, rows.b, rows.G.reshape(*rows.a.shape, 2, -1)
     y = (G[:, :, 1] + b[..., None] * G[:, :, 0]) / a[..., None]
     free = np.concatenate([G[:, :, 0], y[:, :-1]], axis=1)
-    return np.concatenate([np.log(a).ravel(), np.log(b).ravel(), free.ravel()])
+    own, ratio = np.sqrt(a).ravel(), (0.5 * b / np.sqrt(a)).ravel()
+    return np.concatenate([np.log(own), np.log(ratio), free.ravel()])
 
 
 @njit(cache=True, error_model="numpy")
