@@ -25,8 +25,8 @@ turbine = galerna.load_turbine("5MW_Land/Main.fst")  # an OpenFAST deck
 A windIO file is checked against the schema of windIO v2 and then for what a schema
 cannot say; a file of windIO v1 is refused with the converter to use. What windIO has
 no place for (publications, published figures, damping ratios, the platform as a rigid
-body) stands beside it in `NAME.companion.yaml`. Decks are read by keyword, so their
-version does not matter: ElastoDyn, AeroDyn with polars and coordinates, BeamDyn, tower,
+body) stands beside it in `NAME.companion.yaml`; see "Floating platforms" below. Decks
+are read by keyword, so their version does not matter: ElastoDyn, AeroDyn with polars and coordinates, BeamDyn, tower,
 ServoDyn and ROSCO's DISCON.IN. `turbine.notes` lists what a reader decided, missed or
 left out; `galerna.turbine.windio.write(turbine, "file.yaml")` writes windIO.
 
@@ -35,6 +35,43 @@ shown where both figures exist. The rated point is the lowest wind speed at whic
 power curve gives rated power, with the rotor speed there by the turbine's own strategy; the
 peak power coefficient is the largest at fine pitch, with the wind along the shaft. Where
 natural frequencies are published, those of the parked machine are computed beside them.
+
+## Floating platforms
+
+`components.floating_platform` and `components.mooring` of a windIO file are read: joints
+(Cartesian, cylindrical, relative, along members), members with round and rectangular
+sections (`side_length_a` is the level side), drag coefficients, nodes, lines and their types.
+The hull is the union of the members, so what they share at joints counts once. The companion
+adds, in SI units:
+
+```yaml
+platform:
+  reference_point: [0.0, 0.0, 0.0]
+  mass: 17854000.0  # with all ballast; these four stand together
+  center_of_mass: [0.0, 0.0, -14.94]
+  inertia: [1.251e+10, 1.251e+10, 2.367e+10]  # about the centre of mass
+  additional_damping: [1.0e+5, 1.0e+5, 1.3e+5, 0.0, 0.0, 1.3e+7]  # surge to yaw
+  hydrodynamics: my_turbine.hydro.nc  # beside the companion
+mooring:
+  yaw_stiffness: 98340000.0
+  seabed_friction: 0.0
+  line_types:
+    main: {mass: 685.0, weight: 5842.1, stiffness: 3.27e+9}  # per m: in air, in water; EA
+members:
+  pontoon1: {sides: [12.5, 7.0], drag_coefficient: [0.8, 0.8], axial_drag_coefficient: 0.6}
+```
+
+- Without a mass in the companion it is that of walls, bulkheads, fixed ballast, the
+  transition piece and rigid bodies. Variable ballast is left out and noted: what balances the
+  machine afloat is for the companion to state. Members' walls that overlap at joints count
+  twice there, and stiffeners do not count.
+- A line type's `diameter` is windIO's, of the displaced volume. Without mass and stiffness, a
+  studless chain counts as one of the nominal diameter d = diameter / 1.8, with 19,900 d^2 kg/m
+  and EA = 0.854e11 d^2 N (DNV-OS-E301), a studlink chain with 1.89, 21,900 and 1.01e11; other
+  kinds need their figures. Its weight in water is that of 1025 kg/m3.
+- A rectangle under `members` replaces a round section, for files that have none; polygons are
+  refused.
+- `galerna.turbine.windio.write` writes members and lines back, without the members' structure.
 """
 
 

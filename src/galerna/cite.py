@@ -285,12 +285,23 @@ _IEA15MW = Reference(
     "10.2172/1603478",
     "techreport",
 )
+_VOLTURNUS = Reference(
+    "Allen2020",
+    "C. Allen, A. Viselli, H. Dagher, A. Goupee, E. Gaertner, N. Abbas, M. Hall, G. Barter",
+    2020,
+    "Definition of the UMaine VolturnUS-S reference platform developed for the IEA Wind "
+    "15-megawatt offshore reference wind turbine",
+    "NREL/TP-5000-76773",
+    "10.2172/1660012",
+    "techreport",
+)
 
 TURBINES = {
     "nrel5mw": (_NREL5MW,),
     "nrel5mw_oc3": (_NREL5MW, _OC3),
     "dtu10mw": (_DTU10MW,),
     "iea15mw": (_IEA15MW,),
+    "iea15mw_volturnus": (_IEA15MW, _VOLTURNUS),
 }
 
 #: per aerodynamic model and option of it: what each of its values rests on
