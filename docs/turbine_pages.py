@@ -26,9 +26,10 @@ A windIO file is checked against the schema of windIO v2 and then for what a sch
 cannot say; a file of windIO v1 is refused with the converter to use. What windIO has
 no place for (publications, published figures, damping ratios, the platform as a rigid
 body) stands beside it in `NAME.companion.yaml`; see "Floating platforms" below. Decks
-are read by keyword, so their version does not matter: ElastoDyn, AeroDyn with polars and coordinates, BeamDyn, tower,
-ServoDyn and ROSCO's DISCON.IN. `turbine.notes` lists what a reader decided, missed or
-left out; `galerna.turbine.windio.write(turbine, "file.yaml")` writes windIO.
+are read by keyword, so their version does not matter: ElastoDyn, AeroDyn with polars
+and coordinates, BeamDyn, tower, ServoDyn and ROSCO's DISCON.IN. `turbine.notes` lists
+what a reader decided, missed or left out;
+`galerna.turbine.windio.write(turbine, "file.yaml")` writes windIO.
 
 `galerna turbine NAME` prints what follows for any turbine, and its notes. A difference is
 shown where both figures exist. The rated point is the lowest wind speed at which the steady
