@@ -29,6 +29,7 @@ MODULES = (
     "machine_base_motion",
     "machine_operation",
     "machine_energy",
+    "afloat_hull",
     "afloat_waves",
     "afloat_database",
     "afloat_radiation",
