@@ -125,6 +125,32 @@ def on_body(
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
+def place(points: Array, vessel: Integers, arms: Array, position: Array, rotation: Array) -> None:
+    """Move ``vessel`` (k,) of the points to ``arms`` (k,3) of a frame."""
+    for i in range(len(vessel)):
+        for j in range(3):
+            turned = rotation[j, 0] * arms[i, 0] + rotation[j, 1] * arms[i, 1]
+            points[vessel[i], j] = position[j] + turned + rotation[j, 2] * arms[i, 2]
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def turn_back(
+    spring: float, ahead: Array, rotation: Array, moment: Array, stiffness: Array
+) -> None:
+    """Add a spring N m/rad about z against the heading of ``ahead`` (3,) in a frame; eq. (17)."""
+    x, y, z = 0.0, 0.0, 0.0
+    for j in range(3):
+        x += rotation[0, j] * ahead[j]
+        y += rotation[1, j] * ahead[j]
+        z += rotation[2, j] * ahead[j]
+    level = x * x + y * y
+    moment[2] -= spring * np.arctan2(y, x)
+    stiffness[5, 3] -= spring * x * z / level
+    stiffness[5, 4] -= spring * y * z / level
+    stiffness[5, 5] += spring
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
 def _hat(r: Array, A: Array) -> None:
     A[:] = 0.0
     A[0, 1], A[0, 2], A[1, 2] = -r[2], r[1], -r[0]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from math import atan2, inf
+from math import inf
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from galerna.turbine.platform import Mooring
 from galerna.units import STANDARD_GRAVITY
 
 from .catenary import RESTING
-from .lines import on_body, tensions
+from .lines import on_body, place, tensions, turn_back
 from .network import SEA_WATER, Found, Network
 
 _LINES = ("mooring_line",)
@@ -46,13 +46,14 @@ class Fairleads:
         self.stations = (Stations(carrier.stations.part, span),)
         #: the frame as described, and the fairleads in its axes
         self.place, self.axes = carrier.position[frame], carrier.rotation[frame]
-        self._arms = (places - self.place) @ self.axes
+        self._arms = np.ascontiguousarray((places - self.place) @ self.axes)
+        self._ahead = np.ascontiguousarray(self.axes[0])  # the platform's x axis
         self._yaw_stiffness = network.mooring.yaw_stiffness
 
     def points(self, motion: Motion, start: Array) -> Array:
         """All points (n,3) m: fairleads where the frame is, the others as at ``start``."""
         points = start.copy()
-        points[self.network.vessel] = motion.position[0] + self._arms @ motion.rotation[0].T
+        place(points, self.network.vessel, self._arms, motion.position[0], motion.rotation[0])
         return points
 
     def velocity(self, motion: Motion) -> Array:
@@ -67,17 +68,8 @@ class Fairleads:
             found.points, self.network.vessel, found.force, found.stiffness, motion.position[0],
             force[0], moment[0], stiffness[0],
         )  # fmt: skip
-        if self._yaw_stiffness:
-            self._turn_back(motion.rotation[0], moment[0], stiffness[0])
+        turn_back(self._yaw_stiffness, self._ahead, motion.rotation[0], moment[0], stiffness[0])
         return Loads(force, moment, stiffness)
-
-    def _turn_back(self, R: Array, moment: Array, stiffness: Array) -> None:
-        """The yaw spring, eq. (17): yaw is the heading of the platform's x axis."""
-        x, y, z = R @ self.axes[0]
-        moment[2] -= self._yaw_stiffness * atan2(y, x)
-        stiffness[5, 3:] += self._yaw_stiffness * np.array(
-            [-x * z / (x * x + y * y), -y * z / (x * x + y * y), 1.0]
-        )
 
 
 def standing(fairleads: Fairleads) -> Motion:

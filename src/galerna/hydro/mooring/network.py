@@ -18,12 +18,13 @@ from galerna.turbine.platform import LineType, Mooring, MooringNode
 from galerna.units import STANDARD_GRAVITY
 
 from .checks import ON_THE_SEABED, check_mooring, check_spans
-from .lines import Integers, add_own, assemble
+from .lines import BED, Integers, add_own, assemble
 
 SEA_WATER = 1025.0  #: kg/m3, in which line types' weights are given
 STEPS, HALVES, BALANCED = 200, 40, 1e-11  #: the last is a share of the largest force
 LONGEST_STEP = 0.2  #: of the longest line
 SINKS = 0.01  #: m, how deep a connection sinks into the seabed under all that it may carry
+TRACE = 1e-12  #: of the seabed's stiffness
 _RANK = {"fixed": 0, "connection": 1, "vessel": 2}
 
 
@@ -116,7 +117,6 @@ class Network:
             size = float(np.abs(residual).max())
             if size <= BALANCED * max(np.abs(found).max(), 1.0):
                 return
-            stiffness += 1e-9 * stiffness.diagonal().max() * np.eye(len(stiffness))
             step = np.linalg.solve(stiffness, residual)
             step *= min(1.0, reach / np.abs(step).max())
             start, work = points[free], float(residual @ step)
@@ -140,15 +140,18 @@ class Network:
             up, stiff = add_own(points[node, 2], self.own[node], self.depth)
             own[i, 2] += up
             K[3 * node + 2, 3 * node + 2] += stiff
+        return own.ravel(), self._between_connections(K)
+
+    def _between_connections(self, K: Array) -> Array:
+        """Their stiffness (3c,3c), with a trace where neither lines nor water hold them."""
         at = self._rows(self.free)
-        return own.ravel(), K[np.ix_(at, at)]
+        trace = TRACE * self.own[self.free[0], BED]
+        return np.asarray(K[np.ix_(at, at)] + trace * np.eye(len(at)))
 
     def _condensed(self, K: Array) -> Array:
         """The stiffness of the other points where the connections follow them; eq. (16)."""
         at = self._rows(self.free)
-        inner = K[np.ix_(at, at)]
-        inner += 1e-9 * inner.diagonal().max() * np.eye(len(at))
-        return np.asarray(K - K[:, at] @ np.linalg.solve(inner, K[at]))
+        return np.asarray(K - K[:, at] @ np.linalg.solve(self._between_connections(K), K[at]))
 
     @staticmethod
     def _rows(nodes: Integers) -> Integers:
