@@ -20,7 +20,7 @@ from galerna.contract import Array
 from galerna.errors import InputError
 from galerna.hydro.database import Complex, HydroDatabase
 from galerna.hydro.far_field import ANGLES, FarField, Moving, Surface, kochin, mean_drift
-from galerna.hydro.panels import Panels, displacement
+from galerna.hydro.panels import Displacement, Panels, displacement
 from galerna.hydro.rigid import MODES, turn
 from galerna.hydro.waves.dispersion import wavenumber
 from galerna.units import DEG
@@ -80,14 +80,16 @@ def compute(
     water_depth: float = np.inf,
     water_density: float = 1025.0,
     gravity: float = 9.80665,
+    displaced: Displacement | None = None,
     moving: Moving | None = None,
     progress: Progress | None = None,
 ) -> HydroDatabase:
     """Coefficients at ``frequencies`` (n,) rad/s and ``headings`` (m,) rad.
 
-    A body of revolution (``panels.sectors`` above 1) stands about the vertical through the
-    reference point; it is asked for surge, heave and pitch in waves along x alone, the rest
-    follows by turning. ``moving`` gives the mean drift of the moving hull, without it that of
+    Panels that know a symmetry stand about the vertical through the reference point. A body of
+    revolution is asked for surge, heave and pitch in waves along x alone, the rest follows by
+    turning. ``displaced`` gives hydrostatics better than the panels', about the z axis of the
+    reference point. ``moving`` gives the mean drift of the moving hull, without it that of
     a held one. ``progress`` is told how many of all frequencies are done. Frequencies that
     fail become NaN, with one warning. Zero frequency comes with infinite depth alone: in
     finite depth heave's added mass has no limit there, it grows with -log(k h). Raises
@@ -99,12 +101,12 @@ def compute(
     _check_frequencies(frequency, water_depth, gravity)
     run = _run(panels, asked, reference, (water_depth, water_density, gravity))
     rows, failures = _solve_all(run, frequency, progress)
-    base = _assembled(run, panels, reference, frequency, rows)
+    base = _assembled(run, panels, reference, frequency, rows, displaced)
     far = FarField(np.stack([r.diffraction for r in rows]), np.stack([r.radiation for r in rows]))
     if not failures:
         base = replace(base, mean_drift=mean_drift(base, far, moving))
     settings = _settings(run, panels, base, "held" if moving is None else "moving")
-    full = base if panels.sectors == 1 else _turned(base, asked)
+    full = _turned(base, asked) if panels.revolution else base
     return replace(full.symmetrised(), settings=settings)
 
 
@@ -112,7 +114,7 @@ def _check_frequencies(frequency: Array, depth: float, gravity: float) -> None:
     where = "frequencies of the hydrodynamic database"
     if not len(frequency) or frequency.min() <= 0.0 or (np.diff(frequency) <= 0.0).any():
         raise InputError(where, "must be positive and rise", "give rad/s, such as 0.05 ... 5")
-    lowest = _lowest(depth, gravity)
+    lowest = lowest_frequency(depth, gravity)
     if frequency[0] < lowest:
         raise InputError(
             where,
@@ -122,7 +124,7 @@ def _check_frequencies(frequency: Array, depth: float, gravity: float) -> None:
         )
 
 
-def _lowest(depth: float, gravity: float) -> float:
+def lowest_frequency(depth: float, gravity: float) -> float:
     """The lowest frequency rad/s that capytaine solves beside 0; 0 in infinite depth."""
     kh = _SHALLOWEST
     return float(np.sqrt(gravity / depth * kh * np.tanh(kh))) if np.isfinite(depth) else 0.0
@@ -143,25 +145,30 @@ def capytaine() -> Any:
 
 def _run(panels: Panels, headings: Array, reference: Array, water: tuple[float, ...]) -> _Run:
     cpt = capytaine()
-    revolution = panels.sectors > 1
-    shift = np.zeros(3) if revolution else reference * [1.0, 1.0, 0.0]
-    hull = _mesh(cpt, panels.vertices - shift, panels.faces, panels.sectors)
+    shift = np.zeros(3) if _is_symmetric(panels) else reference * [1.0, 1.0, 0.0]
+    hull = _mesh(cpt, panels, panels.vertices - shift, panels.faces)
     lid = None
     if len(panels.lid_faces):
-        lid = _mesh(cpt, panels.lid_vertices - shift, panels.lid_faces, panels.sectors)
-    elif not revolution:
+        lid = _mesh(cpt, panels, panels.lid_vertices - shift, panels.lid_faces)
+    elif not _is_symmetric(panels):
         lid = hull.generate_lid()
     dofs = cpt.rigid_body_dofs(rotation_center=(0.0, 0.0, reference[2]))
     named = {name: dofs[name.capitalize()] for name in MODES}
     body = cpt.FloatingBody(mesh=hull, lid_mesh=lid, dofs=named)
-    modes = _IN_PLANE if revolution else tuple(range(6))
+    modes = _IN_PLANE if panels.revolution else tuple(range(6))
     solver = cpt.BEMSolver(method="direct")
-    return _Run(solver, body, modes, np.zeros(1) if revolution else headings, *water)
+    return _Run(solver, body, modes, np.zeros(1) if panels.revolution else headings, *water)
 
 
-def _mesh(cpt: Any, vertices: Array, faces: np.ndarray, sectors: int) -> Any:
+def _is_symmetric(panels: Panels) -> bool:
+    return panels.sectors > 1 or panels.mirrored
+
+
+def _mesh(cpt: Any, panels: Panels, vertices: Array, faces: np.ndarray) -> Any:
     mesh = cpt.Mesh(vertices=vertices, faces=faces, auto_check=False)
-    return mesh if sectors == 1 else cpt.RotationSymmetricMesh(mesh, n=sectors)
+    if panels.mirrored:
+        mesh = cpt.ReflectionSymmetricMesh(mesh, plane="xOz")
+    return mesh if panels.sectors == 1 else cpt.RotationSymmetricMesh(mesh, n=panels.sectors)
 
 
 def _solve_all(
@@ -250,13 +257,18 @@ def _limit(run: _Run, frequency: float) -> Array:
 
 
 def _assembled(
-    run: _Run, panels: Panels, reference: Array, frequency: Array, rows: list[_Row]
+    run: _Run,
+    panels: Panels,
+    reference: Array,
+    frequency: Array,
+    rows: list[_Row],
+    displaced: Displacement | None = None,
 ) -> HydroDatabase:
     sideways = reference * [1.0, 1.0, 0.0]
     vertices, faces = panels.whole()
-    if panels.sectors == 1:
+    if not _is_symmetric(panels):
         vertices = vertices - sideways
-    displaced = displacement(vertices, faces)
+    displaced = displacement(vertices, faces) if displaced is None else displaced
     height = reference * [0.0, 0.0, 1.0]
     return HydroDatabase(
         frequency=frequency,
@@ -309,8 +321,14 @@ def _settings(run: _Run, panels: Panels, base: HydroDatabase, drift: str) -> dic
         "program": f"capytaine {capytaine().__version__}",
         "method": "direct",
         "panels": float(panels.count),
-        "sectors": float(panels.sectors),
+        "symmetry": _symmetry(panels),
+        "panel_volume_m3": displacement(*panels.whole()).volume,
         "lid_panels": float(0 if lid is None else lid.nb_faces),
         "longest_panel_m": float(2.0 * run.body.mesh.faces_radiuses.max()),
         "drift": f"far field, hull {drift}",
     }
+
+
+def _symmetry(panels: Panels) -> str:
+    parts = ["mirrored"] if panels.mirrored else []
+    return ", ".join([f"{panels.sectors} sectors", *parts, *["revolution"] * panels.revolution])

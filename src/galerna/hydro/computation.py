@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -10,18 +10,23 @@ import numpy as np
 
 from galerna.contract import Array
 from galerna.errors import InputError
-from galerna.hydro.capytaine_runs import HEADINGS, Progress, compute
+from galerna.hydro.capytaine_runs import HEADINGS, Progress, compute, lowest_frequency
 from galerna.hydro.database import HydroDatabase
 from galerna.hydro.database_checks import haskind_ratio, long_waves, smallest_damping
+from galerna.hydro.hull_mesh import platform_panels
 from galerna.hydro.netcdf import write_netcdf
-from galerna.hydro.panels import Panels, is_revolution, revolution_panels, revolution_profile
+from galerna.hydro.panels import (
+    Displacement,
+    Panels,
+    is_revolution,
+    revolution_panels,
+    revolution_profile,
+)
 from galerna.hydro.rigid_machine import afloat, rigid_machine
 from galerna.turbine import load
 from galerna.turbine.model import Turbine
 from galerna.turbine.platform import Platform
-from galerna.units import DEG
-
-Mesh = Callable[[Platform, float], Panels]
+from galerna.units import DEG, STANDARD_GRAVITY
 
 
 @dataclass(frozen=True)
@@ -33,17 +38,21 @@ class HydroRow:
     remark: str = ""
 
 
-def default_frequencies(last: float = 5.0) -> Array:
-    """About a hundred frequencies rad/s up to ``last``, densest where waves and hulls meet."""
+def default_frequencies(last: float = 5.0, depth: float = np.inf) -> Array:
+    """About a hundred frequencies rad/s up to ``last``, densest where waves and hulls meet.
+
+    They begin where capytaine can, in a depth m.
+    """
     parts = [
         np.array([0.03, 0.04, 0.05, 0.065, 0.08]),
-        np.arange(0.1, 0.2, 0.02),
-        np.arange(0.2, 2.0, 0.03),
-        np.arange(2.0, 5.0 + 1e-9, 0.1),
+        0.1 + 0.02 * np.arange(5),
+        0.2 + 0.03 * np.arange(60),
+        2.0 + 0.1 * np.arange(31),
     ]
     every = np.round(np.concatenate(parts), 4)
     beyond = np.arange(5.1, last + 1e-9, 0.1)
-    return np.concatenate([every[every <= last + 1e-9], beyond])
+    least = lowest_frequency(depth, STANDARD_GRAVITY)
+    return np.concatenate([every[(every >= least) & (every <= last + 1e-9)], beyond])
 
 
 def compute_database(
@@ -51,48 +60,45 @@ def compute_database(
     frequencies: Array | None = None,
     headings: Array = HEADINGS,
     *,
+    last_frequency: float = 5.0,
     panel_size: float = 2.0,
     sectors: int = 96,
     water_depth: float | None = None,
-    mesh: Mesh | None = None,
     progress: Progress | None = None,
 ) -> HydroDatabase:
     """Coefficients of a floating turbine's hull by capytaine, with its mean drift.
 
     A stack of round members on one vertical axis is a body of revolution of ``sectors``
-    wedges; any other hull comes from ``mesh``, which makes panels of a size from a platform.
+    wedges; any other hull is the union of its members in even panels of ``panel_size`` m.
     ``water_depth`` m replaces the platform's. Raises InputError.
     """
     platform = afloat(turbine)
     depth = platform.water_depth if water_depth is None else water_depth
     if depth <= 0.0:
         raise InputError("platform.water_depth", "is not given", "give the depth of the water in m")
-    panels = _panels(platform, panel_size, sectors, mesh)
+    panels, displaced = _panels(platform, panel_size, sectors)
     _check_draft(panels, depth)
+    if frequencies is None:
+        frequencies = default_frequencies(last_frequency, depth)
     base = compute(
         panels,
-        default_frequencies() if frequencies is None else frequencies,
+        frequencies,
         headings,
         reference_point=platform.reference_point,
         water_depth=depth,
+        displaced=displaced,
         moving=rigid_machine(turbine),
         progress=progress,
     )
     return replace(base, settings={"hull": turbine.name, **base.settings})
 
 
-def _panels(platform: Platform, size: float, sectors: int, mesh: Mesh | None) -> Panels:
+def _panels(platform: Platform, size: float, sectors: int) -> tuple[Panels, Displacement | None]:
     if is_revolution(platform.members):
         corners, axis = revolution_profile(platform.members)
         if np.abs(axis - np.asarray(platform.reference_point)[:2]).max() < 1e-6:
-            return revolution_panels(corners, size, sectors)
-    if mesh is None:
-        raise InputError(
-            "platform members",
-            "are not a stack of round members on the reference point's vertical",
-            "give a mesh of the hull (galerna.hydro.hull)",
-        )
-    return mesh(platform, size)
+            return revolution_panels(corners, size, sectors), None
+    return platform_panels(platform, size)
 
 
 def _check_draft(panels: Panels, depth: float) -> None:
@@ -110,7 +116,6 @@ def hydro_command(
     panel_size: float = 2.0,
     sectors: int = 96,
     water_depth: float | None = None,
-    mesh: Mesh | None = None,
     progress: Progress | None = None,
 ) -> tuple[HydroDatabase, Path, list[HydroRow]]:
     """Compute and write the coefficients of a turbine by name or file; tell what they are.
@@ -120,12 +125,11 @@ def hydro_command(
     machine = load(turbine)
     base = compute_database(
         machine,
-        default_frequencies(last_frequency),
-        _headings(heading_step_deg),
+        headings=_headings(heading_step_deg),
+        last_frequency=last_frequency,
         panel_size=panel_size,
         sectors=sectors,
         water_depth=water_depth,
-        mesh=mesh,
         progress=progress,
     )
     path = output if output is not None else Path(f"{Path(turbine).stem}.hydro.nc")
@@ -181,6 +185,6 @@ def _judgements(base: HydroDatabase) -> list[HydroRow]:
         rows.append(HydroRow("damping over Haskind's", f"{ratio:.4f}", "1 in theory"))
     if long is not None:
         at_first = f"1 for long waves; at {base.frequency[0]:.3g} rad/s"
-        rows.append(HydroRow("heave force over C33", f"{long.heave.real:.4f}", at_first))
-        rows.append(HydroRow("surge force over its mass", f"{long.surge.real:.4f}", at_first))
+        rows.append(HydroRow("heave force over C33 + a_z m", f"{long.heave.real:.4f}", at_first))
+        rows.append(HydroRow("surge force over a_x m", f"{long.surge.real:.4f}", at_first))
     return rows

@@ -146,10 +146,11 @@ def haskind_ratio(base: HydroDatabase) -> float | None:
 
 @dataclass(frozen=True)
 class LongWaves:
-    """What the longest waves of a database must do and do; ratios are 1 in theory.
+    """What the longest waves of a database do over what they must; 1 in theory.
 
-    ``heave``: excitation over the stiffness; ``surge``: excitation along x over i g k times
-    displaced and added mass; complex, so a time factor exp(-i w t) makes ``surge`` negative.
+    The water around the centre of buoyancy moves with a_x along and a_z upwards: ``surge`` is
+    the excitation over a_x (rho V + A11), ``heave`` over C33 plus a_z (rho V + A33); complex,
+    so a time factor exp(-i w t) makes ``surge`` negative.
     """
 
     heave: complex
@@ -158,13 +159,25 @@ class LongWaves:
 
 def long_waves(base: HydroDatabase) -> LongWaves | None:
     """Ratios at the first frequency; None where even its waves are not long beside the hull."""
-    k = float(base.wavenumber[0])
-    depth = abs(float(base.center_of_buoyancy[2]))
-    if k * (depth if np.isfinite(depth) else base.displaced_volume ** (1.0 / 3.0)) > _LONG:
+    k, height = float(base.wavenumber[0]), float(base.center_of_buoyancy[2])
+    height = height if np.isfinite(height) else 0.0
+    if k * max(-height, base.displaced_volume ** (1.0 / 3.0)) > _LONG:
         return None
     ahead = np.cos(base.heading)
     m = int(np.abs(ahead).argmax())
+    along, upwards = _accelerations(base, k, height)
+    mass = base.water_density * base.displaced_volume + np.diagonal(base.added_mass[0])
     force, still = base.excitation[0, m], base.hydrostatic_stiffness[2, 2]
-    mass = base.water_density * base.displaced_volume + base.added_mass[0, 0, 0]
-    heave = complex(force[2] / still) if still > 0.0 else complex(np.nan)
-    return LongWaves(heave, complex(force[0] / (1j * base.gravity * k * mass * ahead[m])))
+    return LongWaves(
+        complex(force[2] / (still - upwards * mass[2])),
+        complex(force[0] / (1j * along * mass[0] * ahead[m])),
+    )
+
+
+def _accelerations(base: HydroDatabase, k: float, height: float) -> tuple[float, float]:
+    """Sizes 1/s2 of the water's along the waves and upwards, per amplitude, at a height m."""
+    up, image = np.exp(k * height), 0.0
+    if np.isfinite(base.water_depth):
+        image = np.exp(-k * (height + 2.0 * base.water_depth))
+    scale = base.gravity * k / (1.0 + np.exp(-2.0 * k * base.water_depth))
+    return float(scale * (up + image)), float(scale * (up - image))

@@ -22,9 +22,10 @@ _FINE = 20.0  # panels at the still water and at sharp edges are this much short
 class Panels:
     """Panels of a wetted hull, ``vertices`` (v,3) m and ``faces`` (f,4), normals outwards.
 
-    A triangle's last index stands twice. ``lid_vertices`` and ``lid_faces`` cover the still
+    A triangle has one index twice. ``lid_vertices`` and ``lid_faces`` cover the still
     water inside. ``sectors`` above 1: the whole is that many equal wedges about the z axis,
-    of which only the first is held.
+    of which one is held; of a ``mirrored`` wedge only the half of y > 0. ``revolution``: the
+    wedges stand for a body of revolution.
     """
 
     vertices: Array
@@ -32,18 +33,25 @@ class Panels:
     lid_vertices: Array
     lid_faces: np.ndarray
     sectors: int = 1
+    mirrored: bool = False
+    revolution: bool = False
 
     @property
     def count(self) -> int:
         """Number of panels of the whole hull, without the lid."""
-        return len(self.faces) * self.sectors
+        return len(self.faces) * self.sectors * (1 + self.mirrored)
 
     def whole(self) -> tuple[Array, np.ndarray]:
         """Vertices and faces of the whole hull."""
+        vertices, faces = self.vertices, self.faces
+        if self.mirrored:
+            other = faces[:, [0, 3, 2, 1]] + len(vertices)
+            faces = np.append(faces, other, axis=0)
+            vertices = np.append(vertices, vertices * [1.0, -1.0, 1.0], axis=0)
         angles = 2.0 * np.pi / self.sectors * np.arange(self.sectors)
-        vertices = np.concatenate([self.vertices @ _about_z(a).T for a in angles])
-        steps = len(self.vertices) * np.arange(self.sectors)
-        return vertices, np.concatenate([self.faces + step for step in steps])
+        steps = len(vertices) * np.arange(self.sectors)
+        turned = np.concatenate([vertices @ _about_z(a).T for a in angles])
+        return turned, np.concatenate([faces + step for step in steps])
 
 
 def _about_z(angle: float) -> Array:
@@ -134,7 +142,8 @@ def revolution_panels(corners: Array, size: float, sectors: int = 96) -> Panels:
     waterline = corners[0, 0]
     rings = max(3, sectors // 12)
     lid = np.stack([np.linspace(waterline, 0.0, rings + 1), np.zeros(rings + 1)], axis=1)
-    return Panels(*_wedge(profile, sectors), *_wedge(lid, sectors), sectors)
+    held = (*_wedge(profile, sectors), *_wedge(lid, sectors))
+    return Panels(*held, sectors, revolution=True)
 
 
 def _wedge(profile: Array, sectors: int) -> tuple[Array, np.ndarray]:

@@ -114,7 +114,7 @@ def _check_long_waves(base: HydroDatabase, files: Mapping[str, Path]) -> None:
             "the file has the time factor exp(-i w t) or waves that come from BETA; WAMIT has "
             "exp(+i w t) and waves towards BETA",
         )
-    for name, ratio in (("heave over C33", long.heave), ("surge over its mass", long.surge)):
+    for name, ratio in (("heave over C33 + a_z m", long.heave), ("surge over a_x m", long.surge)):
         if np.isfinite(ratio.real) and not 0.2 < abs(ratio) < 3.0:
             raise InputError(
                 f"{files['.3']} and {files['.hst']}",
