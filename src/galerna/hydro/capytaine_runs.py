@@ -21,7 +21,8 @@ from galerna.errors import InputError
 from galerna.hydro.database import Complex, HydroDatabase
 from galerna.hydro.far_field import ANGLES, FarField, Moving, Surface, kochin, mean_drift
 from galerna.hydro.panels import Displacement, Panels, displacement
-from galerna.hydro.rigid import MODES, turn
+from galerna.hydro.revolution import whole_of_revolution
+from galerna.hydro.rigid import MODES
 from galerna.hydro.waves.dispersion import wavenumber
 from galerna.units import DEG
 
@@ -106,7 +107,7 @@ def compute(
     if not failures:
         base = replace(base, mean_drift=mean_drift(base, far, moving))
     settings = _settings(run, panels, base, "held" if moving is None else "moving")
-    full = _turned(base, asked) if panels.revolution else base
+    full = whole_of_revolution(base, asked) if panels.revolution else base
     return replace(full.symmetrised(), settings=settings)
 
 
@@ -285,33 +286,6 @@ def _assembled(
         water_depth=run.depth,
         water_density=run.density,
         gravity=run.gravity,
-    )
-
-
-def _turned(base: HydroDatabase, headings: Array) -> HydroDatabase:
-    """The whole of a body of revolution from its motions in the plane of waves along x."""
-
-    def both(a: Array) -> Array:
-        """Sway and roll are surge and pitch turned by a quarter; heave stands alone."""
-        plane = np.zeros_like(a)
-        for i, j in ((0, 0), (0, 4), (4, 0), (4, 4)):
-            plane[..., i, j] = a[..., i, j]
-        quarter = turn(0.5 * np.pi)
-        whole = plane + quarter @ plane @ quarter.T
-        whole[..., 2, 2] = a[..., 2, 2]
-        return np.where(np.abs(whole) > 1e-12 * np.abs(whole).max(), whole, 0.0)
-
-    turns = np.stack([turn(b) for b in headings])
-    drift = base.mean_drift
-    return replace(
-        base,
-        added_mass=both(base.added_mass),
-        damping=both(base.damping),
-        added_mass_infinite=both(base.added_mass_infinite),
-        added_mass_zero=None if base.added_mass_zero is None else both(base.added_mass_zero),
-        heading=headings,
-        excitation=np.einsum("mij,nj->nmi", turns, base.excitation[:, 0]),
-        mean_drift=None if drift is None else np.einsum("mij,nj->nmi", turns, drift[:, 0]),
     )
 
 
