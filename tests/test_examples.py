@@ -18,6 +18,10 @@ SCRIPTS = sorted(path.name for path in examples.folder().glob("*.py"))
 #: what must come out of a few seconds of each case: channel, lowest and highest mean
 EXPECTED = {
     "demo": ("rotor_power", 3e6, 8e6),
+    "on_land": ("rotor_power", 3e6, 8e6),
+    "free_decay": ("platform_pitch", 0.05, 0.09),
+    "regular_wave": ("platform_surge", 9.0, 16.0),
+    "volturnus": ("electrical_power", 10e6, 16e6),
     "turbulent": ("rotor_power", 2e6, 8e6),
     "yawed": ("rotor_power", 1.0e6, 1.8e6),
     "gust": ("rotor_power", 12e6, 20e6),

@@ -218,6 +218,32 @@ def wind(
     commands.wind(case, bts, hawc2, plot)
 
 
+@app.command(epilog=example("galerna hydro nrel5mw_oc3 --panel-size 1.5"))
+def hydro(
+    turbine: TurbineArgument,
+    output: Annotated[
+        Path | None, typer.Option("--output", "-o", help="File; TURBINE.hydro.nc by default.")
+    ] = None,
+    panel_size: Annotated[float, typer.Option(help="Largest side of a panel, m.")] = 2.0,
+    sectors: Annotated[int, typer.Option(help="Panels around a body of revolution.")] = 96,
+    last_frequency: Annotated[float, typer.Option(help="Highest frequency, rad/s.")] = 5.0,
+    heading_step_deg: Annotated[float, typer.Option(help="Between two headings, deg.")] = 30.0,
+    water_depth: Annotated[float | None, typer.Option(help="m; the turbine's by default.")] = None,
+) -> None:
+    """Compute a platform's potential-flow coefficients from its hull (extra: hydro)."""
+    from galerna import commands
+
+    commands.hydro(
+        turbine,
+        output,
+        last_frequency=last_frequency,
+        heading_step_deg=heading_step_deg,
+        panel_size=panel_size,
+        sectors=sectors,
+        water_depth=water_depth,
+    )
+
+
 @app.command(epilog=example("galerna validate rotor --json checks.json"))
 def validate(
     names: Annotated[

@@ -7,7 +7,7 @@ import shutil
 import sys
 from contextlib import AbstractContextManager, closing, nullcontext
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from galerna import examples
 from galerna.errors import GalernaError, InputError
@@ -194,6 +194,23 @@ def list_turbines() -> None:
     ]
     headings = ("name", "turbine", "diameter [m]", "hub height [m]", "rated [MW]", "stands")
     tables.print_rows("", headings, rows, numbers_from=2)
+
+
+def hydro(turbine: str, output: Path | None, **settings: Any) -> None:
+    """Compute a platform's coefficients into a file, and show them."""
+    from galerna.hydro.computation import hydro_command
+    from galerna.results.store import check_free
+
+    path = output or Path(f"{Path(turbine).stem}.hydro.nc")
+    check_free(path, overwrite=False)
+
+    def progress(done: int, of: int) -> None:
+        print(f"\r{done} of {of} frequencies", end="", file=sys.stderr, flush=True)
+
+    _, path, rows = hydro_command(turbine, path, progress=progress, **settings)
+    print(file=sys.stderr)
+    shown = ((row.quantity, row.value, row.remark) for row in rows)
+    tables.print_rows(str(path), ("quantity", "value", ""), shown, numbers_from=3)
 
 
 def show_turbine(name: str) -> None:

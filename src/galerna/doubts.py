@@ -40,8 +40,8 @@ def doubts(
         yield from _about_attached_flow(turbine, operation.rotor_speed.value, mean_wind)
     if case.moves and case.structure is not None:
         yield from _about_step(turbine, case.structure, case.time_step_s)
-    if turbine.platform is not None and case.base_motion is None:
-        yield "the platform is held still: no hydrodynamics yet"
+    if turbine.platform is not None and case.base_motion is None and case.sea is None:
+        yield "the platform is held still: give a sea for it to float in, such as `sea: still`"
     if case.base_motion is not None:
         yield from _about_base_motion(case.base_motion, case.time_step_s)
     if isinstance(case.control, BaselineOptions):

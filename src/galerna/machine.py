@@ -35,6 +35,8 @@ if TYPE_CHECKING:
     from galerna.aero.vortex.options import VortexLatticeOptions
     from galerna.control.interface import Controller
     from galerna.coupling.afloat import Afloat
+    from galerna.coupling.flexible import FlexibleMachine
+    from galerna.coupling.floating_report import FloatingReport
     from galerna.coupling.trim import Trim
     from galerna.inflow.field import WindField
 
@@ -69,6 +71,12 @@ class Machine:
             yield from describe_lattice(self.vortex_lattice, motion, case.time_step_s)
         if "bodies" in simulation.load_models and not any(self.turbine.nacelle.drag_area):
             yield "note", "the turbine has no drag areas of the nacelle: the tower alone has drag"
+        if self.afloat is not None:
+            for note in self.afloat.notes:
+                yield "sea", note
+            if self.report is not None:
+                yield from self.report.lines()
+                yield "frequencies", self._floating_frequencies()
         for note in self.turbine.notes:
             yield "note", note
         steps = round(case.duration_s / case.time_step_s)
@@ -92,6 +100,33 @@ class Machine:
             return [FlowWriter(model, model.options.flow_output, folder, overwrite, since)]
 
     @property
+    def report(self) -> FloatingReport | None:
+        """How its platform floats at rest; None where nothing floats."""
+        floating = None if self.afloat is None else self.afloat.floating
+        if floating is None or floating.burden is None:
+            return None
+        from galerna.coupling.floating_report import FloatingReport
+
+        gravity = cast("FlexibleMachine", self.simulation.structure).system.gravity
+        return FloatingReport.of(floating.water, floating.burden, floating.settled, gravity)
+
+    def _floating_frequencies(self) -> str:
+        """The platform's natural frequencies where it starts."""
+        from galerna.coupling.build import turbine_options
+        from galerna.coupling.floating_report import modes_in_words, modes_of
+
+        assert self.afloat is not None
+        floating = self.afloat.floating
+        assert floating is not None
+        assert floating.burden is not None
+        options = turbine_options(self.case, self.turbine, self.operation, self.afloat)
+        modes = modes_of(
+            self.turbine, options, floating.water, floating.burden, floating.settled,
+            self.afloat.database,
+        )  # fmt: skip
+        return modes_in_words(modes)
+
+    @property
     def vortex_lattice(self) -> VortexLattice | None:
         """The rotor's model, if it is a vortex lattice."""
         if isinstance(self.case.case.aerodynamics, BemOptions):
@@ -110,6 +145,10 @@ class Machine:
     def doubts(self) -> Iterator[str]:
         """What can be simulated but is hardly meant, a sentence each."""
         yield from doubts.doubts(self.case.case, self.turbine, self.operation, self.wind.mean_speed)
+        if self.afloat is not None:
+            yield from self.afloat.warnings
+        if self.report is not None:
+            yield from self.report.doubts()
 
 
 def build_machine(case: LoadedCase, controller: Controller | None = None) -> Machine:

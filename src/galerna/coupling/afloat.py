@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -25,7 +25,7 @@ from galerna.hydro.drag import ViscousDrag
 from galerna.hydro.files import read_database
 from galerna.hydro.hull import build_hull
 from galerna.hydro.hydrostatics import NonlinearBuoyancy
-from galerna.hydro.lines import mooring_loads
+from galerna.hydro.mooring import mooring_loads
 from galerna.hydro.platform_options import PlatformOptions
 from galerna.hydro.potential_flow import PotentialFlow
 from galerna.hydro.sea_options import SeaOptions
@@ -46,13 +46,14 @@ class Floating:
     """A platform that floats: ``pose`` is where it is held while its machine is trimmed.
 
     ``displaced`` (6,) m and rad is added to the equilibrium at the start: surge, sway, heave,
-    roll, pitch, yaw.
+    roll, pitch, yaw. ``burden`` and ``settled`` are those of the last equilibrium.
     """
 
     water: WaterAtRest
     pose: Pose
     displaced: Array
     burden: Burden | None = None
+    settled: Pose = field(default_factory=lambda: Pose(np.zeros(3), np.eye(3)))
 
     def settle(self, machine: SteadyMachine, rotor_speed: float, pitch: Array) -> None:
         """Hold a machine where it floats at a rotor speed rad/s and a pitch (b,) rad.
@@ -66,6 +67,7 @@ class Floating:
             distance = found.distance(self.pose)
             machine.carry(self.pose, found)
             if distance < SETTLED:
+                self.settled.take(found)
                 return
         what = f"platform and rotor find no balance: the last pass moved it by {distance:.3g}"
         raise ConvergenceError("platform", what, "start it with another operation")

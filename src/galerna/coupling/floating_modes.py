@@ -12,12 +12,14 @@ from galerna.contract import Array, Loads
 from galerna.coupling.flexible import FlexibleMachine
 from galerna.coupling.floating import ARM, DIRECTIONS
 from galerna.hydro.database import Complex, HydroDatabase
-from galerna.structure.modes import linearise, natural_modes
+from galerna.structure.modes import Modes, linearise, natural_modes
 from galerna.structure.system import Forces, State
 
-PASSES = 4  #: of a frequency and the coefficients at it
-MODES = 9  #: that are computed about a frequency: platform, tower, the turning rotor
-MOVED = 1e-4  #: of a mode's largest motion: less of the platform's is another part's mode
+PASSES = 3  #: of a frequency and the coefficients at it
+FIRST, MODES = 14, 6  #: modes that are computed: from the lowest on, and about a frequency
+LOW = 0.2  #: rad/s, of the coefficients with which modes are looked for
+MOVED = 0.02  #: of a mode's largest motion: less of the platform's is another part's mode
+SLOWEST = 1e-4  #: Hz: slower is a rotor that turns freely
 
 
 @dataclass(frozen=True)
@@ -35,16 +37,24 @@ def floating_modes(
     """The six modes of the platform about an equilibrium at rest, by rising frequency.
 
     ``loads`` are those of the load models there, whose mass block of the water is the database's
-    added mass at infinite frequency. Coefficients at rest: no viscous drag.
+    added mass at infinite frequency. Coefficients at rest: no viscous drag. A mode has its name
+    from the largest motion of the machine's mass centre, rotations counted at 50 m.
     """
     base = machine.forces(loads)
     node = int(machine.parts.parts["platform"][0])
+    center = _mass_center(machine, state, node)
     found = []
-    for direction, frequency in _first_guesses(machine, state, base, node):
+    modes = natural_modes(machine.system, state, FIRST, _at(base, node, database, LOW))
+    for k, (name, shown) in _named(modes, node, center):
+        frequency, ratio, shape = modes.frequency[k], modes.damping_ratio[k], shown
         for _ in range(PASSES):
             forces = _at(base, node, database, 2.0 * np.pi * frequency)
-            name, frequency, ratio = _nearest(machine, state, forces, node, direction, frequency)
-        found.append(FloatingMode(name, frequency, ratio))
+            near = natural_modes(machine.system, state, MODES, forces, about_hz=frequency)
+            alike = [abs(np.vdot(_motion(one, node, center), shape)) for one in near.shape]
+            best = int(np.argmax(alike))
+            shape = _motion(near.shape[best], node, center)
+            frequency, ratio = near.frequency[best], near.damping_ratio[best]
+        found.append(FloatingMode(name, float(frequency), float(ratio)))
     return sorted(found, key=lambda mode: mode.frequency)
 
 
@@ -72,33 +82,33 @@ def response(
     return np.concatenate([np.zeros((1, 6)), found])
 
 
-def _first_guesses(
-    machine: FlexibleMachine, state: State, forces: Forces, node: int
-) -> Iterator[tuple[int, float]]:
-    modes = natural_modes(machine.system, state, 3 * MODES, forces)
-    taken: set[int] = set()
+def _named(modes: Modes, node: int, center: Array) -> Iterator[tuple[int, tuple[str, Complex]]]:
+    """Numbers of the six modes that move the platform most, each with its name and motion."""
+    free: dict[str, tuple[float, int, Complex]] = {}
     for k in range(len(modes)):
-        direction, share = _direction(modes.shape[k], node)
-        if share > MOVED and direction not in taken and modes.frequency[k] > 0.0:
-            taken.add(direction)
-            yield direction, float(modes.frequency[k])
+        shape = _motion(modes.shape[k], node, center)
+        size = float(np.linalg.norm(shape)) / float(np.abs(modes.shape[k] / ARM).max())
+        if size < MOVED or modes.frequency[k] < SLOWEST:
+            continue
+        name = DIRECTIONS[int(np.abs(shape).argmax())]
+        if name not in free or modes.frequency[k] < modes.frequency[free[name][1]]:
+            free[name] = size, k, shape
+    for name, (_, k, shape) in free.items():
+        yield k, (name, shape)
 
 
-def _nearest(
-    machine: FlexibleMachine, state: State, forces: Forces, node: int, direction: int, near: float
-) -> tuple[str, float, float]:
-    """The mode of a direction whose frequency is nearest."""
-    modes = natural_modes(machine.system, state, MODES, forces, about_hz=near)
-    same = [k for k in range(len(modes)) if _direction(modes.shape[k], node)[0] == direction]
-    best = min(same, key=lambda k: abs(modes.frequency[k] - near))
-    return DIRECTIONS[direction], float(modes.frequency[best]), float(modes.damping_ratio[best])
+def _motion(shape: Array, node: int, center: Array) -> Complex:
+    """Motion (6,) of the machine's mass centre with the platform, rotations times 50 m."""
+    moved, turned = shape[node, :3], shape[node, 3:]
+    return np.concatenate([moved + np.cross(turned, center), turned / ARM[3:]])
 
 
-def _direction(shape: Array, node: int) -> tuple[int, float]:
-    """The platform's largest motion in a mode, and how large it is beside all others."""
-    own = np.abs(shape[node]) / ARM
-    everywhere = float((np.abs(shape) / ARM).max())
-    return int(own.argmax()), float(own.max()) / everywhere
+def _mass_center(machine: FlexibleMachine, state: State, node: int) -> Array:
+    """The machine's mass centre (3,) m in the platform's axes."""
+    weight = machine.system.weight
+    first = weight[:, :1] * state.position + np.einsum("nij,nj->ni", state.rotation, weight[:, 1:])
+    middle = first.sum(axis=0) / weight[:, 0].sum()
+    return np.asarray(state.rotation[node].T @ (middle - state.position[node]))
 
 
 def _at(base: Forces, node: int, database: HydroDatabase, frequency: float) -> Forces:

@@ -3,19 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from galerna.contract import Array, Loads
+from galerna.coupling.equilibrium import turn
+from galerna.coupling.flexible import FlexibleMachine
 from galerna.coupling.floating import DIRECTIONS, Burden, Pose, WaterAtRest
 from galerna.coupling.floating_modes import FloatingMode, floating_modes
+from galerna.structure import TurbineOptions
 from galerna.structure.frames import roll_pitch_yaw
+from galerna.structure.statics import static_equilibrium
+from galerna.structure.system import Forces, State
+from galerna.turbine.model import Turbine
 from galerna.units import DEG
 
 if TYPE_CHECKING:
-    from galerna.coupling.flexible import FlexibleMachine
     from galerna.hydro.database import HydroDatabase
 
 IMBALANCE = 0.005  #: of the weight, between weight, buoyancy and lines where it was described
@@ -47,17 +52,17 @@ class FloatingReport:
     def lines(self) -> Iterator[tuple[str, str]]:
         """Pairs of heading and text."""
         yield "floats at", _in_words(self.pose, self.place)
-        yield "without wind", _in_words(self.upright, self.place)
+        yield "", f"without wind at {_in_words(self.upright, self.place)}"
         weight = self.burden.mass * float(np.linalg.norm(self.gravity))
-        yield "weight", f"{weight / 1e6:.6g} MN, {self.burden.mass:.6g} kg"
+        yield "forces", f"weight: {weight / 1e6:.4f} MN, {self.burden.mass:.6g} kg"
         for name, load in self.water.loads(self.place).items():
-            yield f"{name} at rest", _force_in_words(load)
-        force, moment = self.burden.wrench[:3] / 1e3, self.burden.wrench[3:] / 1e6
-        shown = ", ".join(f"{f:z.4g}" for f in force)
-        turning = ", ".join(f"{m:z.4g}" for m in moment)
-        yield "wind and rotor", f"{shown} kN; {turning} MN m about the reference point"
+            force, moment = load.force.sum(axis=0), load.moment.sum(axis=0)
+            if np.abs(force).max() > 1.0 or np.abs(moment).max() > 1.0:
+                yield "", f"{name}, as described: {_force_in_words(force, moment)}"
+        force, moment = self.burden.wrench[:3], self.burden.wrench[3:]
+        yield "", f"wind and rotor: {_force_in_words(force, moment)}"
         for name, model in self.water.models.items():
-            for line in getattr(model, "describe", lambda pose: ())(self.pose.motion):
+            for line in getattr(model, "describe", lambda motion: ())(self.pose.motion):
                 yield name, line
 
     def doubts(self) -> Iterator[str]:
@@ -84,13 +89,30 @@ class FloatingReport:
 
 
 def modes_of(
-    machine: FlexibleMachine, loads: list[Loads], database: HydroDatabase
-) -> list[FloatingMode]:
-    """The platform's natural frequencies about where a machine is, its rotor at rest."""
-    state = machine.accepted.copy()
-    state.velocity[:] = 0.0
-    state.acceleration[:] = 0.0
-    return floating_modes(machine, state, loads, database)
+    turbine: Turbine, options: TurbineOptions, water: WaterAtRest, burden: Burden,
+    pose: Pose, database: HydroDatabase,
+) -> list[FloatingMode]:  # fmt: skip
+    """The platform's modes about a pose in which it floats under a burden, its rotor held."""
+    held = replace(options, rotor_motion=None, rotor="locked", pitch_motion=None, yaw_motion=None)
+    models = list(water.models.values())
+    machine = FlexibleMachine(turbine, [model.stations for model in models], held)
+    node = int(machine.parts.parts["platform"][0])
+    first = machine.accepted.copy()
+    everything = np.arange(1, len(machine.system))
+    turn(first, everything, first.position[node].copy(), pose.rotation)
+    first.position[everything] += pose.position - first.position[node]
+
+    def loads(state: State) -> Forces:
+        machine.start(state)
+        forces = machine.forces(
+            [model.loads(0.0, at) for model, at in zip(models, machine.motions, strict=True)]
+        )
+        forces.dead[node] += burden.wrench
+        return forces
+
+    state = static_equilibrium(machine.system, first, loads, tolerance=1e-6)
+    loads(state)
+    return floating_modes(machine, state, machine.loads, database)
 
 
 def modes_in_words(modes: list[FloatingMode]) -> str:
@@ -106,8 +128,7 @@ def _in_words(pose: Pose, place: Pose) -> str:
     return ", ".join(f"{name} {value:z.3f} {unit}" for name, value, unit in pairs)
 
 
-def _force_in_words(load: Loads) -> str:
-    force, moment = load.force.sum(axis=0) / 1e6, load.moment.sum(axis=0) / 1e6
-    shown = ", ".join(f"{value:z.5g}" for value in force)
-    turning = ", ".join(f"{value:z.5g}" for value in moment)
-    return f"{shown} MN; {turning} MN m"
+def _force_in_words(force: Array, moment: Array) -> str:
+    pushes = ", ".join(f"{value / 1e6:z.4f}" for value in force)
+    turns = ", ".join(f"{value / 1e6:z.2f}" for value in moment)
+    return f"{pushes} MN and {turns} MN m"

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from math import sqrt, tan
+from math import atan2, cos, sin, sqrt, tan
 
 import numpy as np
 from numba import njit
 
 from galerna.contract import Array, Channel
-from galerna.structure.frames import log_so3
 
 FAST = {"reassoc", "contract", "arcp", "nsz", "afn"}
 
@@ -52,39 +51,6 @@ def _turned(c: float, s: float, a: Array, i: int, b: Array, j: int) -> Array:
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
-def _tilt(c: float, s: float, rotation: Array) -> Array:
-    """Rotation vector (3,) of ``rotation`` seen from the heading's axes."""
-    seen = np.empty((3, 3))
-    for j in range(3):
-        seen[0, j] = c * rotation[0, 0, j] + s * rotation[0, 1, j]
-        seen[1, j] = c * rotation[0, 1, j] - s * rotation[0, 0, j]
-        seen[2, j] = rotation[0, 2, j]
-    return log_so3(seen)
-
-
-@njit(cache=True, error_model="numpy", fastmath=FAST)
-def _stiffness(C: Array, phi: Array, K: Array) -> None:
-    """``K = C J``: J takes a small turn of the axes outside to a change of the rotation vector.
-
-    J = 1 - hat(phi) / 2 + bend (phi phi^T - phi^2 1) on the rotations.
-    """
-    square = phi[0] ** 2 + phi[1] ** 2 + phi[2] ** 2
-    bend = 1.0 / 12.0 + square / 720.0
-    if square > 1e-3:
-        half = 0.5 * sqrt(square)
-        bend = (1.0 - half / tan(half)) / square
-    for i in range(6):
-        x, y, z = C[i, 3], C[i, 4], C[i, 5]
-        along = bend * (x * phi[0] + y * phi[1] + z * phi[2])
-        left = 1.0 - bend * square
-        for j in range(3):
-            K[i, j] = C[i, j]
-        K[i, 3] = left * x + along * phi[0] - 0.5 * (y * phi[2] - z * phi[1])
-        K[i, 4] = left * y + along * phi[1] - 0.5 * (z * phi[0] - x * phi[2])
-        K[i, 5] = left * z + along * phi[2] - 0.5 * (x * phi[1] - y * phi[0])
-
-
-@njit(cache=True, error_model="numpy", fastmath=FAST)
 def _turn_block(c: float, s: float, K: Array) -> None:
     """``K <- T K T^T`` (6,6) with the turn T about z, of cosine c and sine s."""
     for first in (0, 3):
@@ -98,6 +64,68 @@ def _turn_block(c: float, s: float, K: Array) -> None:
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
+def _lean(rotation: Array) -> tuple[float, float, float, float]:
+    """Lean about x and y rad, in axes that turn with the platform, and its yaw's cosine and sine.
+
+    The rotation is a turn about z and then the shortest one that takes z to the body's axis.
+    """
+    up, level = rotation[0, 2, 2], sqrt(rotation[0, 0, 2] ** 2 + rotation[0, 1, 2] ** 2)
+    share = atan2(level, up) / level if level > 0.0 else 1.0
+    x, y = -share * rotation[0, 1, 2], share * rotation[0, 0, 2]
+    yaw = atan2(rotation[0, 1, 0] - rotation[0, 0, 1], rotation[0, 0, 0] + rotation[0, 1, 1])
+    c, s = cos(yaw), sin(yaw)
+    return c * x + s * y, c * y - s * x, c, s
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _float_slope(C: Array, p: Array, own: Array, K: Array) -> None:
+    """Stiffness (6,6) of linear buoyancy in axes that turn with the platform's yaw.
+
+    ``p`` (6,) is the displacement and the lean, ``own`` (2,3) the load. A small turn u of the
+    platform changes its lean by u + (1 - t / sin t) (lean x (lean x u)) / t^2 for a lean of t,
+    and its yaw by u_z + tan(t / 2) / t (lean_y u_x - lean_x u_y).
+    """
+    x, y = p[3], p[4]
+    lean = sqrt(x * x + y * y)
+    across, yawing = -1.0 / 6.0, 0.5
+    if lean > 1e-4:
+        across, yawing = (1.0 - lean / sin(lean)) / lean**2, tan(0.5 * lean) / lean
+    for i in range(6):
+        half, k = i // 3, i % 3
+        # by yaw, the place turns in these axes and the load with them
+        by_yaw = C[i, 0] * p[1] - C[i, 1] * p[0]
+        if k < 2:
+            by_yaw += own[half, 1] if k == 0 else -own[half, 0]
+        over = across * (C[i, 4] * x - C[i, 3] * y)
+        for j in range(3):
+            K[i, j] = C[i, j]
+        K[i, 3] = C[i, 3] + over * y + yawing * y * by_yaw
+        K[i, 4] = C[i, 4] - over * x - yawing * x * by_yaw
+        K[i, 5] = by_yaw
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _float(C: Array, at_rest: Array, offset: Array, rotation: Array, load: Array, K: Array) -> None:
+    """Linear buoyancy (6,) with its stiffness, global axes; it turns with the platform's own yaw.
+
+    It has no memory, so a platform that leans and yaws leans to where it has turned.
+    """
+    p = np.zeros(6)
+    p[3], p[4], c, s = _lean(rotation)
+    shift = _turned(c, -s, offset, 0, offset, 0)
+    own = np.zeros((2, 3))
+    for i in range(3):
+        p[i] = shift[i]
+    for i in range(6):
+        own[i // 3, i % 3] = at_rest[i]
+        for j in range(6):
+            own[i // 3, i % 3] -= C[i, j] * p[j]
+    _float_slope(C, p, own, K)
+    load[:] = _turned(c, s, own, 0, own, 1)
+    _turn_block(c, s, K)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
 def add_up(
     position: Array, rotation: Array, velocity: Array, angular_velocity: Array,
     acceleration: Array, angular_acceleration: Array, c: float, s: float, reference: Array,
@@ -108,32 +136,29 @@ def add_up(
 
     ``c`` and ``s`` are the heading's cosine and sine. ``matrices`` (4,6,6) are stiffness,
     additional damping, added mass and radiation's damping, ``given`` (4,6) buoyancy at rest,
-    radiation, excitation and drift, all in the heading's axes; ``wrench`` (6,) is another
-    buoyancy in global axes.
+    radiation, excitation and drift, all in the heading's axes but the buoyancy, which turns with
+    the platform; ``wrench`` (6,) is another buoyancy in global axes.
     """
     offset = np.empty((1, 3))
     for k in range(3):
         offset[0, k] = position[0, k] - reference[k]
-    p = _turned(c, -s, offset, 0, offset, 0)
-    p[3:] = _tilt(c, s, rotation)
     v = _turned(c, -s, velocity, 0, angular_velocity, 0)
     a = _turned(c, -s, acceleration, 0, angular_acceleration, 0)
     own = np.zeros((6, 6))
     for i in range(6):
-        for k in range(4):
+        for k in range(1, 4):
             own[k, i] = given[k, i]
         for j in range(6):
-            own[0, i] -= matrices[0, i, j] * p[j]
             own[1, i] -= matrices[3, i, j] * v[j]
             own[4, i] -= matrices[2, i, j] * a[j]
             own[5, i] -= matrices[1, i, j] * v[j]
             blocks[1, 0, i, j] = matrices[1, i, j] + matrices[3, i, j]
             blocks[2, 0, i, j] = matrices[2, i, j]
-    _stiffness(matrices[0], p[3:], blocks[0, 0])
-    for k in range(3):
+    for k in range(1, 3):
         _turn_block(c, s, blocks[k, 0])
     halves = own.reshape(12, 3)
-    for k in range(6):
+    _float(matrices[0], given[0], offset, rotation, parts[1], blocks[0, 0])
+    for k in range(1, 6):
         parts[k + 1] = _turned(c, s, halves, 2 * k, halves, 2 * k + 1)
     parts[1] += wrench
     parts[0] = parts[1]
