@@ -30,6 +30,7 @@ MODULES = (
     "machine_operation",
     "machine_energy",
     "afloat_hull",
+    "afloat_mooring",
     "afloat_waves",
     "afloat_database",
     "afloat_radiation",

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from galerna.hydro.mooring import Catenary, catenary
+from galerna.hydro.mooring import Catenary, catenary, line_shape
 
 OC3 = (902.2, 698.094, 384.243e6)  # m, N/m, N
 REGIMES = {  # distance, rise, friction, height of A above the seabed
@@ -213,3 +213,20 @@ def test_moorpy_cases(given, published):
     line = catenary(x, z, length, weight, stiffness, friction=friction or 0.0, height=height)
     found = line.horizontal_a, line.vertical_a, line.horizontal_b, line.vertical_b
     assert found == pytest.approx(published, rel=1e-6, abs=1e-6)
+
+
+@pytest.mark.parametrize("regime", REGIMES)
+def test_shape_runs_from_end_to_end_with_the_tensions_of_the_ends(regime):
+    x, z, friction, height = REGIMES[regime]
+    line = catenary(x, z, *OC3, friction=friction, height=height)
+    points, tension = line_shape(x, z, *OC3, friction=friction, height=height, count=2001)
+    assert points[0] == pytest.approx([0.0, 0.0], abs=1e-9)
+    assert points[-1] == pytest.approx([x, z], abs=1e-5)
+    assert tension[[0, -1]] == pytest.approx([line.tension_a, line.tension_b], abs=1e-6)
+    assert height is None or points[:, 1].min() >= -height - 1e-9
+    if line.horizontal_b > 0.0:  # pieces are as long as their tension stretches them
+        middle = 0.5 * (tension[1:] + tension[:-1])
+        pieces = np.linalg.norm(np.diff(points, axis=0), axis=1)
+        stretched = OC3[0] / 2000 * (1.0 + middle / OC3[2])
+        close = pieces == pytest.approx(stretched, rel=1e-4)
+        assert close or friction > 0.0

@@ -12,8 +12,17 @@ from galerna.turbine.platform import Mooring
 from .catenary import Catenary, catenary
 from .model import MooringLines
 from .network import Network
+from .shape import line_shape, shape_in_space
 
-__all__ = ["Catenary", "MooringLines", "Network", "catenary", "mooring_loads"]
+__all__ = [
+    "Catenary",
+    "MooringLines",
+    "Network",
+    "catenary",
+    "line_shape",
+    "mooring_loads",
+    "shape_in_space",
+]
 
 
 def mooring_loads(
