@@ -337,7 +337,7 @@ TURBULENCE = {"mann": (_MANN_TENSOR, _MANN_BOX), "kaimal": (_VEERS, _IEC)}
 
 
 def references(case: Case) -> list[Reference]:
-    """The publications behind a case, each once: turbine, wind, then aerodynamics."""
+    """The publications behind a case, each once: turbine, wind, water, then aerodynamics."""
     return list(dict.fromkeys(_references(case)))
 
 
@@ -347,6 +347,10 @@ def _references(case: Case) -> Iterator[Reference]:
         yield from TURBULENCE.get(case.inflow.turbulence.kind, ())
     if case.inflow.gust is not None:
         yield _IEC
+    if case.sea is not None:
+        from galerna.cite_water import references_of_water
+
+        yield from references_of_water(case.sea, case.platform)
     unused = _unused(case.aerodynamics)
     for option, publications in AERODYNAMICS[case.aerodynamics.model].items():
         if option not in unused:
