@@ -161,9 +161,9 @@ CASES = [
          "textbook equations instead."),
     Case("afloat-mooring-line", "afloat", "A line of the OC3-Hywind over its distance", oc3_line, 1,
          "Fig. 2.7 of the dissertation; docs/figures/mooring_line.png. The FAST table is rounded, "
-         "so agreement is within half of its last digit. The dissertation's 858.5 m, from which the "
-         "whole line hangs, is the first row of that table where it does; its rows are 0.5 m apart, "
-         "and 901.6 of 902.2 m hang at 858 m."),
+         "so agreement is within half of its last digit. The dissertation's 858.5 m, beyond which "
+         "all of the line hangs, is the first row of that table where it does; its rows are 0.5 m "
+         "apart, and 901.6 of 902.2 m hang at 858 m."),
     Case("afloat-mooring-statics", "afloat", "Moorings of the OC3-Hywind at rest", oc3_statics, 1,
          "The report's matrix came from finite differences in FAST: its C15 and C51 differ by "
          "0.2 %, galerna's are equal as they must be without friction. It counts C66 without the "

@@ -25,7 +25,7 @@ def line_between(
 ) -> None:  # fmt: skip
     """Forces ``F`` (2,3) of a line on its ends, and ``K`` (6,6), minus their slope over both.
 
-    ``found`` (5,) and ``slopes`` (4,3) are those of ``catenary.solve``; eqs. (13) and (14).
+    ``found`` (5,) and ``slopes`` (4,3) are those of ``catenary.solve``; eq. (12).
     """
     length = figures[LENGTH]
     away, across = B[0] - A[0], B[1] - A[1]
@@ -100,7 +100,7 @@ def on_body(
     points: Array, vessel: Integers, F: Array, K: Array, origin: Array,
     force: Array, moment: Array, stiffness: Array,
 ) -> None:  # fmt: skip
-    """Add what ``vessel`` (k,) of the points put on a body: about ``origin`` (3,) m, eq. (15).
+    """Add what ``vessel`` (k,) of the points put on a body: about ``origin`` (3,) m, eq. (13).
 
     ``F`` (n,3) N and ``K`` (3n,3n) N/m are the points' own; ``force`` (3,), ``moment`` (3,) and
     ``stiffness`` (6,6) the body's.
@@ -137,7 +137,7 @@ def place(points: Array, vessel: Integers, arms: Array, position: Array, rotatio
 def turn_back(
     spring: float, ahead: Array, rotation: Array, moment: Array, stiffness: Array
 ) -> None:
-    """Add a spring N m/rad about z against the heading of ``ahead`` (3,) in a frame; eq. (17)."""
+    """Add a spring N m/rad about z against the heading of ``ahead`` (3,) in a frame; eq. (15)."""
     x, y, z = 0.0, 0.0, 0.0
     for j in range(3):
         x += rotation[0, j] * ahead[j]

@@ -149,7 +149,7 @@ class Network:
         return np.asarray(K[np.ix_(at, at)] + trace * np.eye(len(at)))
 
     def _condensed(self, K: Array) -> Array:
-        """The stiffness of the other points where the connections follow them; eq. (16)."""
+        """The stiffness of the other points where the connections follow them; eq. (14)."""
         at = self._rows(self.free)
         return np.asarray(K - K[:, at] @ np.linalg.solve(self._between_connections(K), K[at]))
 
