@@ -59,13 +59,15 @@ def forces(memory, times, velocity):
 
 
 def test_coefficients_are_fitted_within_the_tolerance(database, fit):
+    """0.3 % where the damping is, and above that as an error of the added mass."""
+    w = database.frequency
     K = radiation_of(database)
-    drop = database.added_mass_infinite - fit.added_mass_infinite
-    K += 1j * database.frequency[:, None, None] * drop
-    apart = np.abs(fit.transfer(database.frequency) - K).max(axis=0)
+    K += 1j * w[:, None, None] * (database.added_mass_infinite - fit.added_mass_infinite)
+    apart = np.abs(fit.transfer(w) - K)
     largest = np.abs(K).max(axis=0)
-    assert np.all(apart <= 0.005 * largest + 1e-6)
-    assert fit.error.max() < 0.005
+    assert np.all(apart[w < 1.0] <= 0.003 * largest + 1e-6)
+    assert np.all((apart / w[:, None, None])[w > 1.0] <= 0.0035 * largest + 1e-6)
+    np.testing.assert_allclose(fit.error * largest, apart.max(axis=0), rtol=1e-3, atol=1e-3)
     assert fit.notes == ()
 
 
@@ -209,8 +211,8 @@ def test_impulse_response_of_the_fit(database, fit):
     times = np.linspace(0.0, 30.0, 61)
     apart = np.abs(fit.impulse_response(times) - impulse_response(database, times))
     own = np.abs(impulse_response(database, 0.0)[0])
-    assert np.all(apart[1:] <= 0.01 * own + 1e-6)
-    assert np.all(apart[0] <= 0.05 * own + 1e-6)
+    assert np.all(apart[times >= 1.0] <= 0.01 * own + 1e-6)
+    assert np.all(apart[times < 1.0] <= 0.1 * own + 1e-6)
 
 
 def test_state_space_and_convolution_agree_in_random_motion(database, fit):

@@ -29,12 +29,15 @@ TOLERANCE = 0.003  #: of the largest coefficient: one more section where a fit i
 NOTED = 0.01  #: of the largest coefficient: a worse fit is told
 LARGEST_ERROR = 0.3  #: above it no fit is of use
 ALIKE = 0.5  #: of the tolerance, by which two sets of modes may differ that are one
-MOST_SECTIONS = 6
-FALLS = 0.8  #: of the root mean square, at least, by one more section
+MOST_SECTIONS = 8
+FAR = 2.5  #: times the middle frequency: no section comes there
+FALLS = 0.8  #: of the root mean square: more is no progress
+PATIENCE = 2  #: sections more without progress
 RATIOS = (0.05, 20.0)  #: least and largest damping ratio of a section
 SEARCH, POLISH = 40, 200  #: evaluations of the Jacobian
 SPREADS = ((0.5, 2.0, 0.5), (0.3, 3.0, 0.7), (0.5, 2.0, 0.3))
 NEW_SECTIONS = (0.4, 1.0, 2.5)  #: frequencies over the middle one, of a section that comes new
+NARROW = 0.1  #: damping ratio of one that comes where the fit is worst
 
 
 def radiation_of(database: HydroDatabase) -> Complex:
@@ -91,19 +94,27 @@ def coupled_modes(K: Complex) -> list[list[int]]:
 
 @dataclass(frozen=True, eq=False)
 class _Block:
-    """Coupled modes: ``K`` (n,m,m) over ``scale`` on both sides, weighed by its ``largest``."""
+    """Coupled modes: ``K`` (n,m,m) over ``scale`` on both sides, weighed by its ``largest``.
+
+    ``middle`` rad/s is that of the damping. Above it errors of K count less, by ``care``
+    (n,): there an error of the added mass is multiplied by the frequency, and nothing happens.
+    """
 
     frequency: Array
     K: Complex
     scale: Array
     largest: Array
+    middle: float
+    care: Array
 
     @classmethod
-    def of(cls, frequency: Array, K: Complex) -> _Block:
+    def of(cls, w: Array, K: Complex) -> _Block:
         scale = np.sqrt(np.abs(K).max(axis=0).diagonal())
         over = K / np.outer(scale, scale)
         largest = np.maximum(np.abs(over).max(axis=0), 0.02)
-        return cls(frequency, over, scale, largest)
+        power = np.maximum(over.real.trace(axis1=1, axis2=2), 1e-12)
+        middle = float(np.trapezoid(power * w, w) / np.trapezoid(power, w))
+        return cls(w, over, scale, largest, middle, np.minimum(1.0, middle / w))
 
     def distance(self, rows: Rows) -> tuple[Complex, Array]:
         """Fit minus data over the largest (n,m,m), and the rise (m,m) of A_inf taken out of it."""
@@ -112,15 +123,10 @@ class _Block:
         apart -= 1j * self.frequency[:, None, None] * mass
         return apart / self.largest, mass
 
-    def waves(self) -> tuple[Array, Array, float]:
-        """Powers (m,) and shapes (m,m) of the waves at most, largest first, and the middle
-        frequency rad/s."""
-        power = self.K.real.trace(axis1=1, axis2=2)
-        w = self.frequency
-        middle = float(np.trapezoid(power * w, w) / np.trapezoid(power, w))
-        values, shapes = np.linalg.eigh(np.trapezoid(self.K.real, w, axis=0))
-        largest = np.linalg.eigvalsh(self.K.real).max(axis=0)[::-1]
-        return largest, shapes[:, ::-1], middle if values[-1] > 0.0 else 1.0
+    def waves(self) -> tuple[Array, Array]:
+        """Powers (m,) and shapes (m,m) of the waves at most, largest first."""
+        _, shapes = np.linalg.eigh(np.trapezoid(self.K.real, self.frequency, axis=0))
+        return np.linalg.eigvalsh(self.K.real).max(axis=0)[::-1], shapes[:, ::-1]
 
 
 def _same(block: _Block, known: list[tuple[_Block, Rows]], within: float) -> Rows | None:
@@ -137,25 +143,38 @@ def _same(block: _Block, known: list[tuple[_Block, Rows]], within: float) -> Row
 
 def _fit_block(block: _Block, tolerance: float, most: int) -> Rows:
     """The rows of the fewest sections that do; their number is the rank of the damping."""
-    power, shapes, middle = block.waves()
+    power, shapes = block.waves()
+    middle = block.middle
     count = max(1, int((power > 0.5 * tolerance * power[0]).sum()))
     amplitude = np.sqrt(2.0 * np.maximum(power[:count], 0.0))[:, None] * shapes.T[:count]
-    best, least = None, np.inf
+    best = last = None
+    least, failures = np.inf, 0
     for q in range(2, most + 1):
-        starts = [_start(amplitude, middle, q, *spread) for spread in SPREADS]
-        if best is not None:
-            starts += [_grown(best, middle * ratio) for ratio in NEW_SECTIONS]
-        found = _least(block, starts)
-        distance = block.distance(found)[0]
-        rms = float(np.sqrt((np.abs(distance) ** 2).mean()))
+        spreads = SPREADS if q < 4 else ()
+        starts = [_start(amplitude, middle, q, *spread) for spread in spreads]
+        if last is not None:
+            starts += _grown_starts(block, last)
+        last = _least(block, starts)
+        distance = block.care[:, None, None] * np.abs(block.distance(last)[0])
+        rms = float(np.sqrt((distance**2).mean()))
         if best is None or rms < least * FALLS:
-            best, least = found, rms
-        elif q > 3:
+            best, least, failures = last, rms, 0
+        else:
+            failures += 1
+        if distance.max() < tolerance:
+            return last
+        if failures == PATIENCE:
             break
-        if np.abs(distance).max() < tolerance:
-            return found
     assert best is not None
     return best
+
+
+def _grown_starts(block: _Block, rows: Rows) -> list[Rows]:
+    """Rows with one more section each: broad ones, and a narrow one where they are worst."""
+    distance = block.care * np.abs(block.distance(rows)[0]).max(axis=(1, 2))
+    worst = float(block.frequency[distance.argmax()])
+    broad = [_grown(rows, block.middle * ratio, 0.5) for ratio in NEW_SECTIONS]
+    return [*broad, _grown(rows, worst, NARROW)]
 
 
 def _least(block: _Block, starts: list[Rows]) -> Rows:
@@ -167,8 +186,8 @@ def _least(block: _Block, starts: list[Rows]) -> Rows:
 def _solve(block: _Block, start: Rows, most: int, ends: float) -> tuple[Rows, float]:
     """Least squares in at most so many steps, or until the cost falls by less than ``ends``."""
     r, q = start.a.shape
-    data = (r, q, block.frequency, block.K, 1.0 / block.largest)
-    least, bound = _bounds(start, block.frequency)
+    data = (r, q, block.frequency, block.K, 1.0 / block.largest, block.care)
+    least, bound = _bounds(start, block)
     out = least_squares(
         residuals, np.clip(parameters_of(start), least + 1e-9, bound - 1e-9), slopes, args=data,
         bounds=(least, bound), x_scale="jac", max_nfev=most, ftol=ends, xtol=1e-7, gtol=1e-12,
@@ -176,11 +195,12 @@ def _solve(block: _Block, start: Rows, most: int, ends: float) -> tuple[Rows, fl
     return Rows(*unpacked(out.x, r, q, len(block.scale))), float(out.cost)
 
 
-def _bounds(rows: Rows, frequency: Array) -> tuple[Array, Array]:
+def _bounds(rows: Rows, block: _Block) -> tuple[Array, Array]:
     """Least and largest parameters: no section rings where there are no data to say so."""
     n, whole = rows.a.size, parameters_of(rows).size
     least, bound = np.full(whole, -np.inf), np.full(whole, np.inf)
-    least[:n], bound[:n] = np.log(frequency[0]), np.log(frequency[-1])
+    least[:n] = np.log(block.frequency[0])
+    bound[:n] = np.log(min(block.frequency[-1], FAR * block.middle))
     least[n : 2 * n], bound[n : 2 * n] = np.log(RATIOS)
     return least, bound
 
@@ -200,13 +220,14 @@ def _start(
     return Rows(own**2, b, G.reshape(r, 2 * q, -1))
 
 
-def _grown(rows: Rows, frequency: float) -> Rows:
-    """Rows with one more section each, which as yet does little."""
+def _grown(rows: Rows, frequency: float, damping: float) -> Rows:
+    """Rows with one more section each, of a damping ratio, which as yet does little."""
     r, _, m = rows.G.shape
-    more = np.full((r, 1), frequency)
-    new = 0.01 * np.abs(rows.G[:, ::2]).mean(axis=1, keepdims=True) * np.ones((r, 2, m))
-    new[:, 1] *= -frequency
-    a, b = np.hstack([rows.a, more**2]), np.hstack([rows.b, more])
+    own, b = np.full((r, 1), frequency), np.full((r, 1), 2.0 * damping * frequency)
+    size = 0.02 * damping * np.abs(rows.G[:, ::2]).mean(axis=1, keepdims=True)
+    new = size * np.ones((r, 2, m))
+    new[:, 1] *= -b[0]
+    a, b = np.hstack([rows.a, own**2]), np.hstack([rows.b, b])
     return Rows(a, b, np.concatenate([rows.G, new], axis=1))
 
 

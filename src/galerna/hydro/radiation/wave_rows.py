@@ -133,8 +133,13 @@ def rise(frequency: Array, apart: Complex) -> Array:
 
 
 @njit(cache=True, error_model="numpy")
-def _residuals(a: Array, b: Array, G: Array, frequency: Array, K: Complex, weight: Array) -> Array:
-    """Fit minus data times ``weight`` (m,m), real and imaginary, without what A_inf explains."""
+def _residuals(
+    a: Array, b: Array, G: Array, frequency: Array, K: Complex, weight: Array, care: Array
+) -> Array:
+    """Fit minus data, real and imaginary, without what A_inf explains.
+
+    They are weighed by entry, ``weight`` (m,m), and by frequency, ``care`` (n,).
+    """
     m, n, row = K.shape[1], len(frequency), 0
     apart = transfer(a, b, G, frequency)
     for f in range(n):
@@ -146,16 +151,18 @@ def _residuals(a: Array, b: Array, G: Array, frequency: Array, K: Complex, weigh
     for i in range(m):
         for j in range(i, m):
             for f in range(n):
-                out[row] = weight[i, j] * apart[f, i, j].real
-                out[row + 1] = weight[i, j] * (apart[f, i, j].imag - frequency[f] * mass[i, j])
+                own = weight[i, j] * care[f]
+                out[row] = own * apart[f, i, j].real
+                out[row + 1] = own * (apart[f, i, j].imag - frequency[f] * mass[i, j])
                 row += 2
     return out
 
 
 @njit(cache=True, error_model="numpy")
 def around(
-    parameters: Array, steps: Array, r: int, q: int, frequency: Array, K: Complex, weight: Array
-) -> Array:
+    parameters: Array, steps: Array, r: int, q: int,
+    frequency: Array, K: Complex, weight: Array, care: Array,
+) -> Array:  # fmt: skip
     """Residuals (1 + k, n) at the parameters and after each of k steps along one of them."""
     m = K.shape[1]
     out = np.empty((1 + len(steps), m * (m + 1) * len(frequency)))
@@ -164,7 +171,7 @@ def around(
         if n > 0:
             moved[n - 1] += steps[n - 1]
         a, b, G = unpacked(moved, r, q, m)
-        found = _residuals(a, b, G, frequency, K, weight)
+        found = _residuals(a, b, G, frequency, K, weight, care)
         for k in range(len(found)):
             out[n, k] = found[k]
         if n > 0:
@@ -173,7 +180,7 @@ def around(
 
 
 def residuals(parameters: Array, *data: Any) -> Array:
-    """Residuals (n,) of the parameters; ``data`` are r, q, frequency, K and weight."""
+    """Residuals (n,) of the parameters; ``data`` are r, q, frequency, K and the weights."""
     return np.asarray(around(parameters, NOWHERE, *data)[0])
 
 
