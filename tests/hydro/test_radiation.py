@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from galerna.errors import ConvergenceError, InputError
+from galerna.hydro.netcdf import read_netcdf, write_netcdf
 from galerna.hydro.radiation import (
     Convolution,
     RadiationStateSpace,
@@ -14,6 +15,7 @@ from galerna.hydro.radiation import (
 )
 from galerna.hydro.radiation.convolution import RESOLUTION
 from galerna.hydro.radiation.fit import coupled_modes
+from galerna.hydro.radiation.stored import store_radiation, stored_radiation
 from galerna.hydro.radiation.wave_rows import Rows, realized, transfer
 
 from .analytic_database import (
@@ -308,3 +310,17 @@ def test_a_trial_changes_nothing_committed(database, fit, kind):
     memory.begin(0.05, velocity[3])
     assert all(np.array_equal(before[name], value) for name, value in memory.state().items())
     np.testing.assert_array_equal(memory.begin(0.1, velocity[-1])[0], first)
+
+
+def test_a_stored_fit_comes_back_for_another_density(tmp_path, database):
+    path = tmp_path / "base.nc"
+    write_netcdf(database, path)
+    fit = store_radiation(database, path)
+    point = database.reference_point
+    again = stored_radiation(path, point, database.water_density)
+    assert np.array_equal(again.A, fit.A)
+    assert np.array_equal(again.B, fit.B)
+    lighter = stored_radiation(path, point, 0.5 * database.water_density)
+    assert lighter.transfer([0.7]) == pytest.approx(0.5 * fit.transfer([0.7]))
+    assert stored_radiation(path, point + 1.0, database.water_density) is None
+    assert np.array_equal(read_netcdf(path).added_mass, database.added_mass)

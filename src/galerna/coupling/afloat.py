@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -28,6 +29,8 @@ from galerna.hydro.hydrostatics import NonlinearBuoyancy
 from galerna.hydro.mooring import mooring_loads
 from galerna.hydro.platform_options import PlatformOptions
 from galerna.hydro.potential_flow import PotentialFlow
+from galerna.hydro.radiation import RadiationStateSpace
+from galerna.hydro.radiation.stored import stored_radiation
 from galerna.hydro.sea_options import SeaOptions
 from galerna.hydro.strips import Carrier
 from galerna.hydro.waves import Sea, WaveProbe, build_sea
@@ -128,9 +131,11 @@ def build_water(case: LoadedCase, turbine: Turbine) -> Afloat:
             time_step=settings.time_step_s,
         )
     with case.blame("platform"):
-        database = _database(case, turbine, platform, options, sea)
+        path = _coefficients_file(case, turbine, platform, options)
+        database = like_the_sea(read_database(path, platform), sea)
+        fit = stored_radiation(path, database.reference_point, sea.density)
         carrier = carrier_of(platform, turbine.tower, options)
-        models = _models(platform, database, sea, options, settings.sea, carrier)
+        models = _models(platform, database, sea, options, settings.sea, carrier, fit)
         floating = _floating(settings, platform, models, options)
     return Afloat(sea, database, models, WaveProbe(sea, platform.reference_point[:2]), floating)
 
@@ -149,19 +154,19 @@ def _gravity(settings: Case) -> float:
     return STANDARD_GRAVITY if structure is None else structure.gravity_m_s2
 
 
-def _database(
-    case: LoadedCase, turbine: Turbine, platform: Platform, options: PlatformOptions, sea: Sea
-) -> HydroDatabase:
-    """The coefficients that a case names, or its turbine, for water like the sea's."""
+def _coefficients_file(
+    case: LoadedCase, turbine: Turbine, platform: Platform, options: PlatformOptions
+) -> Path:
+    """The file of coefficients that a case names, or its turbine."""
     given = options.hydrodynamics_file
     path = platform.hydrodynamics if given is None else case.folder / given
-    if path is None or not path.is_file():
-        what = f"{turbine.name!r} has no file of hydrodynamic coefficients"
-        if path is not None:
-            what = f"the file of hydrodynamic coefficients {path} is not there"
-        hint = "make one with `galerna hydro` and name it in hydrodynamics_file"
-        raise InputError("hydrodynamics_file", what, hint)
-    return like_the_sea(read_database(path, platform), sea)
+    if path is not None and path.is_file():
+        return path
+    what = f"{turbine.name!r} has no file of hydrodynamic coefficients"
+    if path is not None:
+        what = f"the file of hydrodynamic coefficients {path} is not there"
+    hint = "make one with `galerna hydro` and name it in hydrodynamics_file"
+    raise InputError("hydrodynamics_file", what, hint)
 
 
 def like_the_sea(base: HydroDatabase, sea: Sea) -> HydroDatabase:
@@ -198,6 +203,7 @@ def _models(
     options: PlatformOptions,
     of_sea: SeaOptions,
     carrier: Carrier,
+    radiation: RadiationStateSpace | None,
 ) -> dict[str, LoadModel]:
     """The loads of the water and the lines, by name."""
     buoyancy = None
@@ -205,7 +211,9 @@ def _models(
         hull = build_hull(platform.members)
         buoyancy = NonlinearBuoyancy(hull, platform.reference_point, sea.density, sea.gravity)
     models: dict[str, LoadModel] = {
-        "hydrodynamics": PotentialFlow(platform, database, sea, options, buoyancy=buoyancy)
+        "hydrodynamics": PotentialFlow(
+            platform, database, sea, options, buoyancy=buoyancy, radiation=radiation
+        )
     }
     if of_sea.drag:
         models["drag"] = ViscousDrag(platform, sea, stretching=of_sea.stretching, carrier=carrier)

@@ -22,6 +22,7 @@ from galerna.hydro.panels import (
     revolution_panels,
     revolution_profile,
 )
+from galerna.hydro.radiation.stored import store_radiation
 from galerna.hydro.rigid_machine import afloat, rigid_machine
 from galerna.turbine import load
 from galerna.turbine.model import Turbine
@@ -134,6 +135,7 @@ def hydro_command(
     )
     path = output if output is not None else Path(f"{Path(turbine).stem}.hydro.nc")
     write_netcdf(base, path)
+    store_radiation(base, path)
     return base, path, table(base, afloat(machine))
 
 
