@@ -203,6 +203,7 @@ def test_failed_frequencies_are_counted_and_named(monkeypatch):
     assert told == [(1, 2), (2, 2)]
     np.testing.assert_array_equal(base.failed, [1.5])
     assert np.isfinite(base.added_mass[0]).all()
+    assert np.isnan(base.added_mass[1, 0, 0])
     assert base.mean_drift is None
     with pytest.raises(InputError, match="no frequency was solved"), warnings.catch_warnings():
         compute(sphere(8), [1.5])

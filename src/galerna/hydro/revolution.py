@@ -22,7 +22,7 @@ def whole_of_revolution(base: HydroDatabase, headings: Array) -> HydroDatabase:
         quarter = turn(0.5 * np.pi)
         whole = plane + quarter @ plane @ quarter.T
         whole[..., 2, 2] = a[..., 2, 2]
-        return np.where(np.abs(whole) > 1e-12 * np.abs(whole).max(), whole, 0.0)
+        return np.where(np.abs(whole) < 1e-12 * np.nanmax(np.abs(whole)), 0.0, whole)
 
     turns = np.stack([turn(b) for b in headings])
     drift = base.mean_drift
