@@ -34,6 +34,7 @@ MODULES = (
     "afloat_waves",
     "afloat_database",
     "afloat_radiation",
+    "afloat_statements",
 )
 
 
