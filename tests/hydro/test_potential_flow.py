@@ -385,8 +385,8 @@ def test_reference_point_beside_the_axis_feels_waves_later(database):
 
 
 def test_sea_above_the_database_is_refused_where_it_matters(database):
-    beyond = waves([60, 500], [1.0, 0.1])
-    with pytest.raises(InputError, match=r"0\.99% of the waves' variance lies above 4 rad/s"):
+    beyond = waves([60, 500], [1.0, 3.0])
+    with pytest.raises(InputError, match=r"90\.00% of the waves' variance lies above 4 rad/s"):
         WaveExcitation(database, beyond)
     excitation = WaveExcitation(database, waves([60, 500], [1.0, 0.01]))
     assert excitation.notes == ("1 waves above the database's last frequency bring no excitation",)

@@ -8,6 +8,7 @@ the indirect one (sources) only with the width itself.
 
 from __future__ import annotations
 
+import gc
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -157,8 +158,12 @@ def _run(panels: Panels, headings: Array, reference: Array, water: tuple[float, 
     named = {name: dofs[name.capitalize()] for name in MODES}
     body = cpt.FloatingBody(mesh=hull, lid_mesh=lid, dofs=named)
     modes = _IN_PLANE if panels.revolution else tuple(range(6))
-    solver = cpt.BEMSolver(method="direct")
-    return _Run(solver, body, modes, np.zeros(1) if panels.revolution else headings, *water)
+    return _Run(_solver(), body, modes, np.zeros(1) if panels.revolution else headings, *water)
+
+
+def _solver() -> Any:
+    gc.collect()
+    return capytaine().BEMSolver(method="direct")
 
 
 def _is_symmetric(panels: Panels) -> bool:
@@ -178,7 +183,8 @@ def _solve_all(
     rows, failures = [], []
     for k, w in enumerate(frequency):
         try:
-            rows.append(_row(run, float(w)))
+            # matrices of all frequencies would stay in one solver's memory
+            rows.append(_row(replace(run, solver=_solver()), float(w)))
         except Exception as error:  # whatever stops one frequency: the batch goes on and says so
             rows.append(_Row.failed(len(run.headings)))
             failures.append(f"{w:.4g} rad/s ({str(error).splitlines()[0]})")

@@ -13,26 +13,43 @@ from .heading import Bins
 from .waves.sea import Sea
 from .waves.series import Series
 
-LEFT_OUT = 1e-3  #: of the elevation's variance, at most, may lie above a database's frequencies
+LEFT_OUT = 0.01  #: of the variance of a force, at most, may come from above the frequencies
+COUNTS = 1e-3  #: of the largest force along its kind of direction: smaller ones do not
 
 
 def covered(database: HydroDatabase, sea: Sea) -> NDArray[np.bool_]:
     """Which waves (n,) the database's frequencies reach.
 
-    Raises InputError with the figures where more of the variance lies above them than may.
+    Raises InputError with the figures where the waves above them may bring more of a force than
+    may be left out: they are thought to act as strongly as those of the last frequency.
     """
     last = float(database.frequency[-1])
     inside = np.asarray(sea.frequency <= last)
-    energy = np.abs(sea.amplitude) ** 2
-    beyond = float(energy[~inside].sum() / max(energy.sum(), 1e-300))
-    if beyond > LEFT_OUT:
+    if inside.all():
+        return inside
+    share = _share_beyond(database, sea, inside)
+    if share > LEFT_OUT:
+        energy = np.abs(sea.amplitude) ** 2
+        beyond = float(energy[~inside].sum() / energy.sum())
         raise InputError(
             "sea",
             f"{beyond:.2%} of the waves' variance lies above {last:.4g} rad/s, where the "
-            f"hydrodynamic database ends (waves go up to {sea.frequency.max():.4g} rad/s)",
+            f"hydrodynamic database ends (waves go up to {sea.frequency.max():.4g} rad/s), with up "
+            f"to {share:.1%} of a force's variance",
             "compute the database up to higher frequencies (galerna hydro), or choose longer waves",
         )
     return inside
+
+
+def _share_beyond(database: HydroDatabase, sea: Sea, inside: NDArray[np.bool_]) -> float:
+    """Largest share of the variance of a force that the waves above the frequencies may bring."""
+    w, last = sea.frequency, float(database.frequency[-1])
+    acting = np.abs(database.excitation_at(np.minimum(w, last), sea.direction)) ** 2
+    variance = acting * np.abs(sea.amplitude[:, None]) ** 2
+    whole = variance.sum(axis=0)
+    largest = np.repeat(whole.reshape(2, 3).max(axis=1), 3)
+    counts = whole > COUNTS**2 * largest
+    return float((variance[~inside].sum(axis=0)[counts] / whole[counts]).max(initial=0.0))
 
 
 class WaveExcitation:
