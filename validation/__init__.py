@@ -34,7 +34,10 @@ MODULES = (
     "afloat_waves",
     "afloat_database",
     "afloat_radiation",
+    "afloat_decay",
+    "afloat_sea",
     "afloat_statements",
+    "afloat_volturnus",
 )
 
 
