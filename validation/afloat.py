@@ -9,7 +9,9 @@ import numpy as np
 import xarray
 
 import galerna
+from galerna.case import load
 from galerna.contract import Array
+from galerna.machine import Machine, build_machine
 
 from .rotors import table
 
@@ -42,6 +44,23 @@ def parked(duration: float, sea: Any, **blocks: Any) -> xarray.Dataset:
         **blocks,
     }
     return galerna.run(case)
+
+
+@cache
+def still_machine(structure: str) -> Machine:
+    """The machine of ``parked`` at rest."""
+    case = {
+        "galerna": 1,
+        "turbine": "nrel5mw_oc3",
+        "duration_s": 1.0,
+        "inflow": {"wind_speed_m_s": 1.0},
+        "air_density_kg_m3": NO_AIR,
+        "tower_and_nacelle_drag": False,
+        "structure": structure,
+        "operation": PARKED,
+        "sea": {"drag": False},
+    }
+    return build_machine(load(case))
 
 
 def motion(result: xarray.Dataset, name: str) -> Array:

@@ -10,13 +10,11 @@ import numpy as np
 import xarray
 from scipy.signal import csd, welch
 
-from galerna.case import load
 from galerna.contract import Array
 from galerna.coupling.floating_modes import response
 from galerna.hydro.database import HydroDatabase
-from galerna.machine import Machine, build_machine
 
-from .afloat import MOTIONS, NO_AIR, PARKED, UNITS, harmonic, motion, parked
+from .afloat import MOTIONS, UNITS, harmonic, motion, parked, still_machine
 from .framework import Case, Check
 
 LINEAR = "linear response of the same machine in the frequency domain, from its database"
@@ -29,23 +27,6 @@ BAND, COHERENCE = (0.05, 0.2), 0.9  #: Hz
 SETTLED, HOUR, STEP = 1200.0, 3600.0, 0.1  #: s
 SEGMENT = 400.0  #: s of a spectrum's windows
 IN_PLANE = ("surge", "heave", "pitch")
-
-
-@cache
-def still_machine(structure: str) -> Machine:
-    """The machine of ``parked`` at rest."""
-    case = {
-        "galerna": 1,
-        "turbine": "nrel5mw_oc3",
-        "duration_s": 1.0,
-        "inflow": {"wind_speed_m_s": 1.0},
-        "air_density_kg_m3": NO_AIR,
-        "tower_and_nacelle_drag": False,
-        "structure": structure,
-        "operation": PARKED,
-        "sea": {"drag": False},
-    }
-    return build_machine(load(case))
 
 
 def database() -> HydroDatabase:
@@ -267,8 +248,8 @@ CASES = [
     Case(
         "afloat-flexible-tower", "afloat", "Rigid and flexible tower in waves",
         lambda: list(rigid_and_flexible()), 150.0,
-        "Platform motions are judged in the band of the waves. Over all frequencies, as was judged at "
-        "first, the flexible machine has 4 and 5 % less surge and pitch: its pitch rings on at 0.033 "
+        "Platform motions are judged in the band of the waves. Over all frequencies, as was judged "
+        "at first, the flexible machine has 4 and 5 % less surge and pitch: it rings on at 0.033 "
         "Hz after the waves have grown, where the rigid one has 0.034 Hz.",
     ),
     Case(
