@@ -1,7 +1,7 @@
 """Make everything that is generated here: ``python -m docs.build [PART ...]``.
 
 Parts: conventions, case, channels, turbines, vortex_sections, vortex_wings, vortex_rotors, machine,
-demo, validation, benchmarks; all where none is given.
+mooring, afloat, demo, validation, benchmarks; all where none is given.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from docs import (
     conventions_figure,
     flexible_rotor_figures,
     machine_figures,
+    mooring_figure,
     turbine_pages,
     vortex_rotor_figures,
     vortex_section_pages,
@@ -68,6 +69,7 @@ PARTS: dict[str, Callable[[], Path]] = {
     "vortex_rotors": vortex_rotor_figures.draw,
     "flexible_rotor": flexible_rotor_figures.draw,
     "machine": machine_figures.draw,
+    "mooring": mooring_figure.draw,
     "demo": demo,
     "validation": validation,
     "benchmarks": benchmarks,
