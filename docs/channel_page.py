@@ -62,6 +62,11 @@ pull gives a positive `blade_root_axial_force`, the nacelle's weight a negative
 - `nacelle_acceleration_...` is felt on the shaft above the yaw axis; OpenFAST's `NcIMU` is
   wherever its deck puts it. The yaw bearing's own mass is above the bearing's load here.
 - `platform_...` is there where the base moves: about z first, about x last.
+- **Water**: `hydrodynamic_...` is the sum of what potential flow gives (OpenFAST's `HydroF..` has
+  Morison's drag in it, `viscous_drag_...` here), `excitation_...`, `radiation_...` (without the added
+  mass at infinite frequency, which is `added_mass_...`), `buoyancy_...` and so on are its parts, about
+  the platform's reference point along global axes. The lines' tensions are at the end on the platform
+  and at the other one.
 
 ## The account of energy
 
@@ -79,11 +84,11 @@ square of the step. `galerna validate energy-of-the-machine`: see [Validation](v
 """
 MACHINE = {
     "galerna": 1,
-    "turbine": "nrel5mw",
+    "turbine": "nrel5mw_oc3",
     "duration_s": 1.0,
     "inflow": {"wind_speed_m_s": 10.0},
     "structure": "flexible",
-    "base_motion": {"surge_m": 0.0},
+    "sea": {"waves": {"kind": "regular", "height_m": 2.0, "period_s": 8.0}},
     "control": "baseline",
     "outputs": {"energy": True},
 }
@@ -106,8 +111,8 @@ def write() -> Path:
     channels, _ = channels_of(load(MACHINE))
     others = "\n".join(f"| `{alias}` | `{name}` |" for alias, name in ALIASES.items())
     PAGE.write_text(
-        f"{HEAD}\n## All channels of a machine\n\nThe NREL 5 MW with everything flexible, a base "
-        "that moves, its controller and blade-element momentum. The vortex lattice has further "
+        f"{HEAD}\n## All channels of a machine\n\nThe NREL 5 MW on the OC3 spar with everything flexible, a sea, "
+        "its controller and blade-element momentum. The vortex lattice has further "
         f"ones: `galerna channels vortex`.\n\n{rows(channels)}\n\n"
         "## Further names that OpenFAST's users know\n\nWith 1 for any number; they choose the "
         f"channel beside them.\n\n| typed | is |\n|---|---|\n{others}\n"
