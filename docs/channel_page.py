@@ -63,10 +63,10 @@ pull gives a positive `blade_root_axial_force`, the nacelle's weight a negative
   wherever its deck puts it. The yaw bearing's own mass is above the bearing's load here.
 - `platform_...` is there where the base moves: about z first, about x last.
 - **Water**: `hydrodynamic_...` is the sum of what potential flow gives (OpenFAST's `HydroF..` has
-  Morison's drag in it, `viscous_drag_...` here), `excitation_...`, `radiation_...` (without the added
-  mass at infinite frequency, which is `added_mass_...`), `buoyancy_...` and so on are its parts, about
-  the platform's reference point along global axes. The lines' tensions are at the end on the platform
-  and at the other one.
+  Morison's drag in it, `viscous_drag_...` here). `excitation_...`, `radiation_...` (without the
+  added mass at infinite frequency, which is `added_mass_...`), `buoyancy_...` and so on are its
+  parts, about the platform's reference point along global axes. The lines' tensions are at the
+  end on the platform and at the other one.
 
 ## The account of energy
 
@@ -111,8 +111,8 @@ def write() -> Path:
     channels, _ = channels_of(load(MACHINE))
     others = "\n".join(f"| `{alias}` | `{name}` |" for alias, name in ALIASES.items())
     PAGE.write_text(
-        f"{HEAD}\n## All channels of a machine\n\nThe NREL 5 MW on the OC3 spar with everything flexible, a sea, "
-        "its controller and blade-element momentum. The vortex lattice has further "
+        f"{HEAD}\n## All channels of a machine\n\nThe NREL 5 MW on the OC3 spar with everything "
+        "flexible, a sea, its controller and blade-element momentum. The lattice has further "
         f"ones: `galerna channels vortex`.\n\n{rows(channels)}\n\n"
         "## Further names that OpenFAST's users know\n\nWith 1 for any number; they choose the "
         f"channel beside them.\n\n| typed | is |\n|---|---|\n{others}\n"
