@@ -235,8 +235,8 @@ OF_LATTICE = """
 they would double the cost; a row of the wake is 8).
 """
 OF_ROSCO = """
-ROSCO 2.10 with the input of its wheel, for land: at 14 degrees its gains are 3.4 and 12 times those for
-the spar, and it holds power. "Detuned" is the same input with the schedule of gains of
+ROSCO 2.10 with the input of its wheel, for land: at 14 degrees its gains are 3.4 and 12 times those
+for the spar, and it holds power. "Detuned" is the same input with the schedule of gains of
 NREL/TP-500-47535 and constant torque, as the baseline has them: two controllers written apart.
 """
 
