@@ -42,6 +42,13 @@ def test_the_shipped_spar_tells_what_its_report_does():
     assert SHIPPED.stat().st_size < 300_000
 
 
+def test_headings_too_far_apart_are_doubted():
+    spar = read_netcdf(SHIPPED)
+    wrong = replace(spar, damping=0.8 * spar.damping)
+    row = next(r for r in table(wrong) if r.quantity == "damping over Haskind's")
+    assert "headings too far apart" in row.remark
+
+
 def test_the_shipped_spar_is_what_the_command_computes():
     """One frequency of the shipped database again, with a coarser mesh of the same members."""
     pytest.importorskip("capytaine")

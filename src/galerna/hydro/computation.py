@@ -184,7 +184,8 @@ def _judgements(base: HydroDatabase) -> list[HydroRow]:
     rows = [HydroRow("smallest eigenvalue of damping", f"{smallest:.1e}", f"at {at:.3g} rad/s")]
     ratio, long = haskind_ratio(base), long_waves(base)
     if ratio is not None:
-        rows.append(HydroRow("damping over Haskind's", f"{ratio:.4f}", "1 in theory"))
+        doubt = "; headings too far apart, or panels too large" if abs(ratio - 1.0) > 0.05 else ""
+        rows.append(HydroRow("damping over Haskind's", f"{ratio:.4f}", "1 in theory" + doubt))
     if long is not None:
         at_first = f"1 for long waves; at {base.frequency[0]:.3g} rad/s"
         rows.append(HydroRow("heave force over C33 + a_z m", f"{long.heave.real:.4f}", at_first))
