@@ -56,6 +56,9 @@ FROM_REFERENCE_TO_REDESIGN: tuple[Claim, ...] = (
     ("standard deviation", "blade pitch", 0.23),
     ("standard deviation", "rotor speed", -0.18),
 )
+#: of the baseline's: two controllers of the same gains and torque, which differ below rated speed
+SAME_LAW = {"mean": 0.01, "standard deviation": 0.05}
+NEAR = 0.5  #: of the text's change: what counts as about that
 UNCHANGED = 0.02  #: of a mean: what counts as the same
 SHOWN = ("surge", "platform pitch", "blade pitch", "rotor speed", "generator power",
          "tower-top fore-aft displacement", "tip displacement out of plane",
@@ -139,14 +142,13 @@ def by_wind() -> Iterator[Check]:
 def changes(
     text: str, before: xarray.Dataset, after: xarray.Dataset, claims: tuple[Claim, ...]
 ) -> Iterator[Check]:
-    """By how much statistics differ, and how many of the text's go the same way here."""
-    same = 0
+    """By how much statistics differ, and how many of the changes are about those of the text."""
+    near = 0
     for kind, quantity, value in claims:
         found = ratio(after, before, kind, quantity)
-        agrees = abs(found) < UNCHANGED if value == 0.0 else found * value > 0.0
-        same += agrees
+        near += abs(found - value) <= (NEAR * abs(value) or UNCHANGED)
         yield Check(f"{text}: {kind} of {quantity}", found, value, FLOATING, None, "-")
-    yield Check(f"{text}: changes that go the text's way", same, len(claims), FLOATING)
+    yield Check(f"{text}: changes within half of the text's", near, len(claims), FLOATING)
 
 
 def ratio(after: xarray.Dataset, before: xarray.Dataset, kind: str, quantity: str) -> float:
@@ -179,17 +181,16 @@ def spectra() -> Iterator[Check]:
 
 
 def rosco() -> Iterator[Check]:
-    """ROSCO's statistics beside those of the baseline controller with the same gains."""
+    """ROSCO's statistics beside those of the baseline controller."""
     own = operated("reference")
     for name in ("ROSCO detuned", "ROSCO on land"):
-        for kind in ("mean", "standard deviation"):
+        other, judged = operated(name), name == "ROSCO detuned"
+        for kind, tolerance in SAME_LAW.items():
             for quantity in SHOWN:
-                here, there = (
-                    statistic(own, kind, quantity),
-                    statistic(operated(name), kind, quantity),
-                )
-                yield Check(f"{kind} of {quantity}", there, here, f"galerna's baseline; {name}",
-                            None, QUANTITIES[quantity][1], relative=True)  # fmt: skip
+                yield Check(f"{kind} of {quantity}", statistic(other, kind, quantity),
+                            statistic(own, kind, quantity), f"galerna's baseline; {name}",
+                            tolerance if judged else None, QUANTITIES[quantity][1],
+                            relative=True)  # fmt: skip
 
 
 STORY = """
@@ -221,7 +222,8 @@ one box, of 17.0 to 19.2 m/s at the hub, open loop makes from 4 % less to 6 % mo
 sample (an inference: its wind is not at hand). That control takes energy from the rotor's
 speed and puts some into the platform's pitching holds.
 **Redesign.** Both gains 23 % lower make 7 % less pitch action and 8 % more deviation of the
-speed, and change nothing of platform, tower and blades by more than 1.5 %. That is what a PI does,
+speed, and over 600 s
+change nothing of platform, tower and blades by more than 1.5 %. That is what a PI does,
 in any of ten windows. The text's 23 % more action and 18 % less deviation are about this with the
 two names exchanged, and two to three times as large. Why is open. A mean surge and pitch 5 and 8 %
 larger at the same power, speed and nearly the same pitch cannot come from the gains, once a
@@ -232,7 +234,12 @@ as with the waves: passing through eddies, it seems.
 """
 OF_LATTICE = """
 3 x 6 x 16 panels, a prescribed wake of six turns, steps of 4 degrees (the dissertation's are of 2:
-they would double the cost; a row of the wake is 8).
+they would double the cost; a row of the wake is 8). The reference gains over the same 150 s by the
+lattice and by BEM: surge 11.66 and 11.45 m, pitch 2.41 and 2.37 degrees, blade pitch 14.76 and
+14.85 degrees; deviations of surge 0.86 and 0.85 m, pitch 0.54 and 0.53 degrees, speed 0.43 and
+0.44 rpm, tower top 0.136 and 0.130 m, tip 0.89 and 1.00 m, root moment out of plane 1.74 and
+1.91 MN m. So the two models say the same of the three runs; what is written of them at
+`afloat-operation-bem` holds here. The wind of these 150 s is 19.2 m/s at the hub.
 """
 OF_ROSCO = """
 ROSCO 2.10 with the input of its wheel, for land: at 14 degrees its gains are 3.4 and 12 times those
