@@ -245,6 +245,10 @@ OF_ROSCO = """
 ROSCO 2.10 with the input of its wheel, for land: at 14 degrees its gains are 3.4 and 12 times those
 for the spar, and it holds power. "Detuned" is the same input with the schedule of gains of
 NREL/TP-500-47535 and constant torque, as the baseline has them: two controllers written apart.
+Below rated speed they differ, which shows in the power's deviation. ROSCO has a feedback of the
+nacelle's motion for floaters too (Fl_Mode); its gain comes from the tuning that its Python package
+does, for which no published figures of this spar were found, so it is left out. With the gains for
+land the platform pitches more, but it does not run away in this wind.
 """
 
 CASES = (
