@@ -227,7 +227,7 @@ def hydro(
     panel_size: Annotated[float, typer.Option(help="Largest side of a panel, m.")] = 2.0,
     sectors: Annotated[int, typer.Option(help="Panels around a body of revolution.")] = 96,
     last_frequency: Annotated[float, typer.Option(help="Highest frequency, rad/s.")] = 5.0,
-    heading_step_deg: Annotated[float, typer.Option(help="Between two headings, deg.")] = 30.0,
+    heading_step_deg: Annotated[float, typer.Option(help="Between two headings, deg.")] = 10.0,
     water_depth: Annotated[float | None, typer.Option(help="m; the turbine's by default.")] = None,
 ) -> None:
     """Compute a platform's potential-flow coefficients from its hull (extra: hydro)."""

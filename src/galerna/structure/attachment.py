@@ -16,8 +16,16 @@ from numba import njit
 from galerna.contract import Array, Loads, Motion
 from galerna.errors import InputError
 
-from .blocks import FAST, apply, apply_transposed, multiply3, multiply3_transposed
-from .forces import BLOCKS, Forces
+from .blocks import (
+    FAST,
+    apply,
+    apply_transposed,
+    multiply3,
+    multiply3_transposed,
+    multiply6,
+    multiply6_transposed,
+)
+from .forces import BLOCKS, NO_BLOCKS, Forces
 from .frames import exp_se3, hat, inverse_tangent_slope, inverse_tangents, log_se3, tangent
 from .pairs import Integers
 from .system import State
@@ -229,20 +237,42 @@ class Attachment:
     def _add_stiff(self, loads: Loads, forces: Forces) -> None:
         if self._fraction.any():
             raise InputError("loads", "tangents of loads are taken on frames alone, not between")
-        for i, frame in enumerate(self.frames):
-            arm = self._vectors[0, i] - self._riding.base_position[i]
-            force, dead = loads.force[i], forces.dead[frame]
-            dead[:3] += force
-            dead[3:] += loads.moment[i]
-            rides_apart = arm.any()
-            if rides_apart:
-                dead[3:] += np.cross(arm, force)
-                carry = np.eye(6)
-                carry[:3, 3:] = -hat(arm)
-            for name in BLOCKS:
-                block = getattr(loads, name)
-                if block is not None:
-                    own = carry.T @ block[i] @ carry if rides_apart else block[i]
-                    getattr(forces, name)[frame] += own
-            if rides_apart and forces.stiffness is not None:
-                forces.stiffness[frame, 3:, 3:] -= hat(force) @ hat(arm)
+        K, D, M = (NO_BLOCKS if block is None else block for block in forces.blocks)
+        stiffness, damping, mass = (
+            NO_BLOCKS if block is None or not len(room) else block
+            for block, room in zip(
+                (getattr(loads, name) for name in BLOCKS), (K, D, M), strict=True
+            )
+        )
+        _put_on_frames(
+            self.frames, self._riding.base_position, self._vectors[0], loads.force, loads.moment,
+            stiffness, damping, mass, forces.dead, K, D, M,
+        )  # fmt: skip
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _put_on_frames(
+    frames: Integers, origin: Array, position: Array, force: Array, moment: Array,
+    stiffness: Array, damping: Array, mass: Array,
+    dead: Array, K: Array, D: Array, M: Array,
+) -> None:  # fmt: skip
+    """Loads with tangents at points that ride on frames, about the frames' origins."""
+    carry = np.eye(6)
+    for i in range(len(frames)):
+        frame, arm = frames[i], position[i] - origin[i]
+        for k in range(3):
+            dead[frame, k] += force[i, k]
+            dead[frame, 3 + k] += moment[i, k] + _cross(arm, 0, force[i], 0, k)
+        apart = arm[0] != 0.0 or arm[1] != 0.0 or arm[2] != 0.0
+        carry[:3, 3:] = -hat(arm)
+        for given, total in ((stiffness, K), (damping, D), (mass, M)):
+            if len(given) == 0:
+                continue
+            own = given[i]
+            if apart:
+                own = multiply6_transposed(carry, multiply6(np.ascontiguousarray(own), carry))
+            for a in range(6):
+                for b in range(6):
+                    total[frame, a, b] += own[a, b]
+        if apart and len(stiffness):  # the arm turns with the frame
+            K[frame, 3:, 3:] -= multiply3(hat(force[i]), hat(arm))

@@ -5,13 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 
 from galerna.contract import Array, Loads
 from galerna.errors import InputError
 
+from .blocks import FAST, multiply3, multiply3_transposed, multiply6
+from .frames import hat
 from .pairs import Integers
 
 BLOCKS = ("stiffness", "damping", "mass")
+NO_BLOCKS = np.zeros((0, 6, 6))
 
 
 @dataclass(eq=False, slots=True)
@@ -55,6 +59,11 @@ class Forces:
         blocks = {name: np.zeros((n, 6, 6)) for name in BLOCKS}
         return cls(np.zeros((n, 6)), np.zeros((n, 6)), **blocks, stiff=np.unique(nodes))
 
+    @property
+    def blocks(self) -> tuple[Array | None, Array | None, Array | None]:
+        """Stiffness, damping and mass."""
+        return self.stiffness, self.damping, self.mass
+
     def clear(self) -> None:
         """Take all loads away, and the blocks."""
         self.dead[:] = 0.0
@@ -89,16 +98,39 @@ def add_load_tangents(
     if forces.stiffness is None and forces.damping is None and forces.mass is None:
         return
     at = np.arange(len(R)) if forces.stiff is None else forces.stiff
-    if forces.stiffness is not None:
-        nodes[at] += in_body_axes(forces.stiffness[at], R[at])
-    # a variation turns the body's axes, in which v is given, and with them the global velocity
-    rotated = np.zeros((len(at), 6, 6))
-    rotated[:, :3, 3:] = -hats(v[at, :3])
-    rotated[:, 3:, 3:] = -hats(v[at, 3:])
-    if forces.damping is not None:
-        nodes[at] += in_body_axes(forces.damping[at], R[at]) @ (velocity_tangent[at] + rotated)
-    if forces.mass is not None:
-        nodes[at] += in_body_axes(forces.mass[at], R[at]) @ acceleration_tangent[at]
+    stiffness, damping, mass = (NO_BLOCKS if b is None else b for b in forces.blocks)
+    _add_blocks(
+        at, stiffness, damping, mass, R, v, velocity_tangent, acceleration_tangent, nodes
+    )  # fmt: skip
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _in_axes(block: Array, R: Array) -> Array:
+    """A block (6,6) given in global axes, in the axes R (3,3)."""
+    out = np.empty((6, 6))
+    for i in (0, 3):
+        for j in (0, 3):
+            turned = multiply3(np.ascontiguousarray(block[i : i + 3, j : j + 3]), R)
+            out[i : i + 3, j : j + 3] = multiply3_transposed(R, turned)
+    return out
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _add_blocks(
+    at: Integers, stiffness: Array, damping: Array, mass: Array, R: Array, v: Array,
+    velocity_tangent: Array, acceleration_tangent: Array, nodes: Array,
+) -> None:  # fmt: skip
+    for i in at:
+        if len(stiffness):
+            nodes[i] += _in_axes(stiffness[i], R[i])
+        if len(damping):
+            # a variation turns the body's axes, in which v is given, and so the global velocity
+            rate = velocity_tangent[i].copy()
+            rate[:3, 3:] -= hat(v[i, :3])
+            rate[3:, 3:] -= hat(v[i, 3:])
+            nodes[i] += multiply6(_in_axes(damping[i], R[i]), rate)
+        if len(mass):
+            nodes[i] += multiply6(_in_axes(mass[i], R[i]), acceleration_tangent[i])
 
 
 def in_body_axes(blocks: Array, R: Array) -> Array:
