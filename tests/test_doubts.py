@@ -53,7 +53,7 @@ def test_a_plain_case_raises_none():
         ({"operation": operation(pitch_deg=[0.0, 101.0, 0.0])}, "pitched to 101 deg"),
         ({"time_step_s": 0.2}, "10.99 deg in a time step of 0.2 s"),  # 6 deg/s per rpm
         ({"duration_s": 2.007}, "not a whole number of steps of 0.02 s: the run ends at 2 s"),
-        ({"turbine": "nrel5mw_oc3"}, "the platform is held still: no hydrodynamics yet"),
+        ({"turbine": "nrel5mw_oc3"}, "the platform is held still: give a sea for it to float in"),
         (
             {"structure": "flexible", "time_step_s": 0.17, "duration_s": 1.7},
             "edgewise bending of the blades takes 0.948 s, 5.6 time steps",

@@ -90,7 +90,7 @@ def test_the_schema_refuses_what_a_case_refuses():
 def test_a_folder_of_its_name_does_not_hide_a_built_in_case(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "demo").mkdir()
-    assert load("demo").case.turbine == "nrel5mw"
+    assert load("demo").case.turbine == "nrel5mw_oc3"
 
 
 def test_copied_examples_run_where_they_are(tmp_path, monkeypatch):
