@@ -58,8 +58,8 @@ def ranges() -> Figure:
     figure, axes = plt.subplots(2, 4, figsize=(13.0, 6.0), layout="constrained")
     for ax, quantity in zip(axes.flat, RANGES, strict=True):
         for k, (name, colour) in enumerate(RUNS.items()):
-            for model, shift, marker in (("BEM", 0.15, "o"), ("lattice", -0.15, "D")):
-                run = afloat_operation.operated(name, model).sel(time=slice(0.0, 150.0))
+            for model, shift, marker in (("BEM, short", 0.15, "o"), ("lattice", -0.15, "D")):
+                run = afloat_operation.operated(name, model)
                 _range(ax, series(run, quantity), -k + shift, colour, marker)
         ax.set_yticks([0, -1, -2], list(RUNS) if ax in axes[:, 0] else [])
         ax.set_title(named(quantity), fontsize=9)

@@ -42,9 +42,11 @@ LATTICE: dict[str, Any] = {
     "wake_revolutions": 6,
     "wake_widest_deg": 30.0,
 }
-#: aerodynamics, duration s and time step s
+#: aerodynamics, duration s and time step s; as another duration is another
+#: sea, "short" has the lattice's
 MODELS: dict[str, tuple[dict[str, Any], float, float]] = {
     "BEM": ({"model": "bem"}, 600.0, 0.04),
+    "BEM, short": ({"model": "bem"}, 150.0, FOUR_DEGREES),
     "lattice": (LATTICE, 150.0, FOUR_DEGREES),
 }
 CHANNELS = (

@@ -103,24 +103,30 @@ def has(
 
 def floating(model: str) -> Iterator[Check]:
     """Equilibrium, and how open loop, reference and redesign differ."""
+    runs = [operated(name, model) for name in ("open loop", "reference", "redesign")]
+    open_loop, reference, redesign = runs
     for quantity, value in EQUILIBRIUM.items():
-        first = float(series(operated("reference", model), quantity)[0])
+        first = float(series(reference, quantity)[0])
         unit = QUANTITIES[quantity][1]
         yield Check(f"equilibrium, {quantity}", first, value, FLOATING, None, unit, relative=True)
-    windows = (AS_LONG,) if model == "lattice" else (np.inf, AS_LONG)
-    for end in windows:
-        open_loop, reference, redesign = (
-            operated(name, model).sel(time=slice(0.0, end))
-            for name in ("open loop", "reference", "redesign")
-        )
-        length = f"{float(reference.time[-1]):.0f} s"
-        pair = f"{length}, from open loop to reference"
-        yield from changes(pair, open_loop, reference, FROM_OPEN_TO_CLOSED)
-        pair = f"{length}, from reference to redesign"
-        yield from changes(pair, reference, redesign, FROM_REFERENCE_TO_REDESIGN)
+    yield from changes("from open loop to reference", open_loop, reference, FROM_OPEN_TO_CLOSED)
+    text = "from reference to redesign"
+    yield from changes(text, reference, redesign, FROM_REFERENCE_TO_REDESIGN)
     if model == "BEM":
         yield from by_wind()
         yield from spectra()
+    else:
+        yield from beside_bem()
+
+
+def beside_bem() -> Iterator[Check]:
+    """The lattice's statistics beside those by BEM in the same wind and sea."""
+    lattice, bem = operated("reference", "lattice"), operated("reference", "BEM, short")
+    for kind in ("mean", "standard deviation"):
+        for quantity in SHOWN:
+            yield Check(f"{kind} of {quantity}", statistic(lattice, kind, quantity),
+                        statistic(bem, kind, quantity), "galerna by BEM, the same wind and sea",
+                        None, QUANTITIES[quantity][1], relative=True)  # fmt: skip
 
 
 def by_wind() -> Iterator[Check]:
@@ -198,7 +204,7 @@ NREL 5 MW on the OC3 spar, flexible, 18 m/s without shear, the Mann box of Table
 text's 11 % (its alpha epsilon^(2/3) of 0.33 would give 15 % here), JONSWAP of 6 m and 10 s along
 the wind, viscous drag of the spar, none of the tower. The random numbers of wind and sea are not
 the dissertation's. Runs begin in the equilibrium of steady wind and still water, and all of them
-counts. Steps of 0.04 s.
+counts. Steps of 0.04 s: over 60 s, 0.02 s change no deviation of these by more than 0.2 %.
 """
 OF_PEAKS = """
 A peak is a density twice that at the ends of a band about it, in spectra by Welch of 200 s
@@ -234,12 +240,12 @@ as with the waves: passing through eddies, it seems.
 """
 OF_LATTICE = """
 3 x 6 x 16 panels, a prescribed wake of six turns, steps of 4 degrees (the dissertation's are of 2:
-they would double the cost; a row of the wake is 8). The reference gains over the same 150 s by the
-lattice and by BEM: surge 11.66 and 11.45 m, pitch 2.41 and 2.37 degrees, blade pitch 14.76 and
-14.85 degrees; deviations of surge 0.86 and 0.85 m, pitch 0.54 and 0.53 degrees, speed 0.43 and
-0.44 rpm, tower top 0.136 and 0.130 m, tip 0.89 and 1.00 m, root moment out of plane 1.74 and
-1.91 MN m. So the two models say the same of the three runs; what is written of them at
-`afloat-operation-bem` holds here. The wind of these 150 s is 19.2 m/s at the hub.
+they would double the cost; a row of the wake is 8). With
+the reference gains, lattice and BEM are 2 % apart in the means of surge and pitch and 0.1 degrees
+in that of the blades' pitch; the lattice's deviations are 7 % smaller at the tip and 8 % in the
+root moment out of plane, 5 % larger in the platform's pitch, and within 3 % elsewhere. So they say
+the same of the three runs; what is written of these at `afloat-operation-bem` holds here. The wind
+of these 150 s is 19.2 m/s at the hub, for which open loop makes more power.
 """
 OF_ROSCO = """
 ROSCO 2.10 with the input of its wheel, for land: at 14 degrees its gains are 3.4 and 12 times those
