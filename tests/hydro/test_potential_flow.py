@@ -463,6 +463,32 @@ def test_bins_go_round():
     assert len(made) == 2
 
 
+def test_headings_that_are_not_met_are_not_asked_for(database, fit):
+    """A database of one heading will do where the heading is fixed; else it is refused at once."""
+    towards_x = int(np.argmin(np.abs(ROUND)))
+    kept = slice(towards_x, towards_x + 1)
+    one = replace(
+        database, heading=ROUND[kept], excitation=database.excitation[:, kept],
+        mean_drift=database.mean_drift[:, kept],
+    )  # fmt: skip
+    half = replace(
+        database, heading=ROUND[: towards_x + 1],
+        excitation=database.excitation[:, : towards_x + 1], mean_drift=None,
+    )  # fmt: skip
+    sea = waves([100], [1.0])
+    motion = Motion.at_rest(1)
+    forces = []
+    for base in (one, database):
+        model = model_of(base, fit, sea, heading="fixed", drift="slow")
+        model.begin_step(0.0, 0.1, motion)
+        forces.append(total(model.loads(0.1, motion)))
+    np.testing.assert_allclose(forces[0], forces[1], rtol=1e-12, atol=1e-6)
+    with pytest.raises(InputError, match="waves go towards 5 deg"):
+        model_of(one, fit, sea)
+    with pytest.raises(InputError, match="waves go towards 5 deg"):
+        model_of(half, fit, sea)
+
+
 def test_options_say_what_they_take():
     assert PlatformOptions().radiation == "state_space"
     with pytest.raises(ValidationError, match="state_space"):

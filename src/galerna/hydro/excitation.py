@@ -9,7 +9,7 @@ from galerna.contract import Array
 from galerna.errors import InputError
 from galerna.hydro.database import Complex, HydroDatabase
 
-from .heading import Bins
+from .heading import BIN, Bins
 from .waves.sea import Sea
 from .waves.series import Series
 
@@ -60,6 +60,11 @@ class WaveExcitation:
         self._inside = covered(database, sea)
         self._bins = Bins(self._series)
         self._bins.around(0.0)
+
+    def prepare(self) -> None:
+        """Make the headings beside 0 too: what the database lacks there is told at once."""
+        for side in (-BIN, BIN):
+            self._bins.around(side)
 
     def transfer(self, heading: float) -> Complex:
         """N/m and N (n,6) of each wave on a platform with a heading rad, in its axes."""

@@ -74,8 +74,9 @@ class Bins(Generic[T]):
     def around(self, heading: float) -> tuple[T, T, float]:
         """Those of the headings below and above, and the share of the latter."""
         place = nearest_turn(heading) / self.gap
-        below = floor(place)
-        return self._one(below), self._one(below + 1), place - below
+        number = floor(place)
+        below, share = self._one(number), place - number
+        return below, self._one(number + 1) if share > 0.0 else below, share
 
     def _one(self, number: int) -> T:
         if number not in self._made:

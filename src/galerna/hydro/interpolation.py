@@ -67,7 +67,8 @@ def heading_weights(base: Array, asked: Array) -> Array:
             _WHERE,
             f"waves go towards {missing:.4g} deg, it holds headings from {base[0] / DEG:.4g} to "
             f"{base[-1] / DEG:.4g} deg",
-            "compute it for headings that go round (galerna hydro), or turn the sea",
+            "compute it for headings that go round (galerna hydro), turn the sea, or say "
+            "`heading: fixed` where only the platform's yaw asks for them",
         )
     if len(base) == 1:
         return np.ones((len(asked), 1))

@@ -188,6 +188,8 @@ def _wave_loads(
     if sea is None or sea.is_still:
         return None, None
     excitation = WaveExcitation(database, sea)
+    if options.heading == "mean_yaw":
+        excitation.prepare()
     if options.drift == "none":
         return excitation, None
     return excitation, (MeanDrift if options.drift == "mean" else SlowDrift)(database, sea)
