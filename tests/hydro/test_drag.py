@@ -265,6 +265,24 @@ def test_carrier_of_many_frames_has_the_loads_of_one():
     assert list(model.record().values())[3:] == pytest.approx(about_first, rel=1e-9)
 
 
+def test_at_rest_there_is_the_current_alone():
+    """Also where the waves do not grow at the start: their drag at time 0 is no mean load."""
+    spar, current = platform(cylinder(axial=1.0)), Current.uniform(0.8, 0.3)
+    at_rest = [
+        ViscousDrag(spar, sea).static_loads(moving())
+        for sea in (
+            Sea.regular(6.0, 10.0, 320.0, current=current),
+            Sea.still(320.0, current=current),
+        )
+    ]
+    np.testing.assert_array_equal(at_rest[0].force, at_rest[1].force)
+    np.testing.assert_array_equal(at_rest[0].moment, at_rest[1].moment)
+    pull = 0.5 * RHO * CD * 9.0 * 120.0 * 0.8**2
+    np.testing.assert_allclose(
+        at_rest[0].force[0], [pull * np.cos(0.3), pull * np.sin(0.3), 0.0], rtol=1e-9
+    )
+
+
 def test_loads_depend_on_time_and_motion_alone():
     sea = irregular()
     model, resumed = (ViscousDrag(platform(cylinder()), sea) for _ in range(2))

@@ -71,14 +71,21 @@ class ViscousDrag:
 
     def loads(self, time: float, motion: Motion) -> Loads:
         """Forces, moments and damping on the carrier's frames."""
+        return self._dragged(time, self._water.series.ramp, motion, self._trial)
+
+    def static_loads(self, motion: Motion) -> Loads:
+        """The drag of the current alone, as before the waves grow, whatever their ramp is."""
+        return self._dragged(0.0, 1.0, motion, np.empty(6))
+
+    def _dragged(self, time: float, ramp: float, motion: Motion, total: Array) -> Loads:
         n = len(motion.position)
         force, moment, damping = np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 6, 6))
         water = self._water
         _drag(
-            time, water.series.table, water.series.step, water.series.ramp, water.layout,
+            time, water.series.table, water.series.step, ramp, water.layout,
             water.stretching, water.depth, self._index, self._geometry, self._figures,
             motion.position, motion.rotation, motion.velocity, motion.angular_velocity,
-            self._row, self._trial, force, moment, damping,
+            self._row, total, force, moment, damping,
         )  # fmt: skip
         return Loads(force, moment, damping=damping)
 
