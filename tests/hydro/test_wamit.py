@@ -173,6 +173,19 @@ def test_what_is_missing_is_named(stem):
         read(stem)
 
 
+@pytest.mark.parametrize("change", ["fewer", "others"])
+def test_drift_of_other_headings_than_the_excitation(stem, change):
+    path = stem.with_suffix(".8")
+    rows = [line.split() for line in path.read_text().splitlines()]
+    if change == "fewer":
+        rows = [row for row in rows if float(row[1]) != 0.0]
+    else:
+        rows = [[row[0], *(str(float(b) + 10.0) for b in row[1:3]), *row[3:]] for row in rows]
+    path.write_text("\n".join(" ".join(row) for row in rows) + "\n")
+    with pytest.raises(InputError, match=r"\.8: lacks \d+ of \d+ pairs of a frequency and a head"):
+        read(stem)
+
+
 def test_no_infinite_frequency(stem):
     lines = stem.with_suffix(".1").read_text().splitlines()
     stem.with_suffix(".1").write_text("\n".join(x for x in lines if float(x.split()[0]) != 0.0))

@@ -31,6 +31,7 @@ _FREQUENCY: dict[str, Callable[[Array], Array]] = {
     "Hz": lambda values: _TURN * values,
 }
 _DRIFT_FILES = (".8", ".9")
+_SAME_HEADING = 1e-4  #: rad
 _ROTATION = (np.arange(6) >= 3).astype(int)
 _LENGTHS = _ROTATION[:, None] + _ROTATION[None, :]  # powers of ULEN beyond the translations'
 
@@ -177,7 +178,7 @@ def _check_full(path: Path, wanted: int, found: int) -> None:
         raise InputError(
             str(path),
             f"lacks {wanted - found} of {wanted} pairs of a frequency and a heading",
-            "every heading must come at every frequency",
+            "every heading of .3 must come at every frequency",
         )
 
 
@@ -230,12 +231,15 @@ def _drift(path: Path | str, column: Column, base: HydroDatabase, length: float)
     table = table[table[:, 1] == table[:, 2]]
     frequency = _FREQUENCY[column](table[:, 0])
     k = np.abs(frequency[:, None] - base.frequency).argmin(axis=1)
-    m = np.abs(table[:, 1, None] * DEG - base.heading).argmin(axis=1)
+    apart = np.abs(table[:, 1, None] * DEG - base.heading)
+    m = apart.argmin(axis=1)
     _check_same(
         file, _FREQUENCY[column](_rising(np.unique(table[:, 0]), column, file)), base.frequency
     )
+    here = apart.min(axis=1) < _SAME_HEADING
+    _check_full(file, base.excitation[:, :, 0].size, len(set(zip(k[here], m[here], strict=True))))
     drift = np.zeros(base.excitation.shape)
-    drift[k, m, table[:, 3].astype(int) - 1] = table[:, 6]
+    drift[k[here], m[here], table[here, 3].astype(int) - 1] = table[here, 6]
     return base.water_density * base.gravity * length ** (1 + _ROTATION) * drift
 
 
