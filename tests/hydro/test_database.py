@@ -194,6 +194,13 @@ def test_a_turned_body_feels_turned_waves():
     )
 
 
+def test_an_unknown_height_does_not_spoil_the_rest_of_a_turned_body():
+    base = replace(column(), center_of_buoyancy=np.array([3.0, 1.0, np.nan]))
+    center = base.rotated(0.5 * np.pi).center_of_buoyancy
+    np.testing.assert_allclose(center[:2], [-1.0, 3.0], atol=1e-12)
+    assert np.isnan(center[2])
+
+
 def test_constant_force_stiffness_is_minus_the_rate_of_its_moment():
     force, arm = np.array([1.0, -2.0, 5.0]), np.array([0.3, 0.7, -2.0])
     stiffness = constant_force_stiffness(force, arm)

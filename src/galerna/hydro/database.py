@@ -131,8 +131,8 @@ class HydroDatabase:
 
         Headings turn with it and lie in -pi..pi again where they go round.
         """
-        arm = self.center_of_buoyancy - self.reference_point
-        center = self.reference_point + turn(angle)[:3, :3] @ arm
+        center, axis = self.center_of_buoyancy.copy(), self.reference_point[:2]
+        center[:2] = axis + turn(angle)[:2, :2] @ (center[:2] - axis)  # its height may be unknown
         turned = replace(self._transformed(turn(angle).T), center_of_buoyancy=center)
         if whole_circle(self.heading):
             return turned.at_headings(self.heading - angle, self.heading)
