@@ -81,6 +81,15 @@ def test_moving_lines_damp_and_resume_to_the_same_bits(settled):
     other.close()
 
 
+def test_goes_back_to_before_the_first_step():
+    lines = DynamicLines(OC3.mooring, BODY, DEPTH, segments=4)
+    start = lines.state()
+    first = march(lines, range(3))
+    lines.restore(start)
+    assert march(lines, range(3)) == first
+    lines.close()
+
+
 def test_without_the_package(monkeypatch):
     monkeypatch.setitem(sys.modules, "moordyn", None)
     with pytest.raises(InputError, match=r"pip install 'galerna\[moordyn\]'"):

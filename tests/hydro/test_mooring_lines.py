@@ -288,6 +288,12 @@ def test_an_anchor_above_the_seabed_may_let_its_line_lie():
     assert line[4] > 0.0 > line[1]
 
 
+def test_anchors_that_hang_above_the_seabed_are_doubted():
+    assert MooringLines(OC3.mooring, BODY, DEPTH).warnings == ()
+    deeper = MooringLines(OC3.mooring, BODY, DEPTH + 10.0).warnings
+    assert deeper == ("mooring: 3 of 3 anchors stand up to 10 m above the seabed at 330 m",)
+
+
 def test_description_names_every_line():
     text = list(MooringLines(OC3.mooring, BODY, DEPTH).describe(posed(np.zeros(6))))
     assert (

@@ -102,6 +102,7 @@ class MooringLines:
         self.fairleads = Fairleads(self.network, carrier)
         self.stations: tuple[Stations, ...] = self.fairleads.stations
         self.coordinates = coordinates(self.network)
+        self.warnings = self.network.warnings
         self._start = self.network.at(self.network.points).points
         self._moved, self._total = self._found(standing(self.fairleads)), np.zeros(6)
         self._shown = self._moved, self._total

@@ -156,6 +156,7 @@ class DynamicLines:
         self.fairleads = Fairleads(self.network, carrier)
         self.stations: tuple[Stations, ...] = self.fairleads.stations
         self.coordinates = coordinates(self.network)
+        self.warnings = self.network.warnings
         self._text = input_text(self.network, density, gravity, segments)
         self._rest = self.network.at(self.network.points).points
         self._system: _System | None = None
@@ -250,7 +251,8 @@ class DynamicLines:
     def restore(self, state: Mapping[str, np.ndarray]) -> None:
         """Take MoorDyn back to what ``state`` gave."""
         self._accepted = np.asarray(state["moordyn"], dtype=np.uint8).tobytes()
-        if not self._accepted:
+        if not self._accepted:  # before the first step, which lets the lines settle
+            self.close()
             return
         if self._system is None:
             still = np.zeros_like(self._from)

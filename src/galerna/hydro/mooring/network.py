@@ -96,6 +96,18 @@ class Network:
         """The lines' names."""
         return tuple(line.name for line in self.mooring.lines)
 
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """Anchors that do not stand on the seabed: perhaps the water's depth is another."""
+        above = self.points[[n.kind == "fixed" for n in self.mooring.nodes], 2] + self.depth
+        high = above > ON_THE_SEABED
+        if not high.any():
+            return ()
+        return (
+            f"mooring: {high.sum()} of {len(high)} anchors stand up to {above.max():.4g} m above "
+            f"the seabed at {self.depth:.6g} m",
+        )
+
     def at(self, points: Array) -> Found:
         """The network with anchors and fairleads at ``points`` (n,3) m; connections start there.
 
