@@ -1,4 +1,4 @@
-"""Buoyancy: linear about the upright platform, and of the displaced hull in still water.
+"""Buoyancy of the displaced hull in still water, and what it is linearly about upright.
 
 With the platform's frame at p, m = int (r - p) dV over the displaced volume V and S the
 waterplane with coordinates x, y from p, the force is rho g V upwards and the moment about p
@@ -26,7 +26,6 @@ from numpy.typing import ArrayLike, NDArray
 from galerna.contract import Array
 from galerna.errors import InputError
 from galerna.hydro.hull import Hull
-from galerna.structure.frames import log_so3, rotation_about
 
 FAST = {"reassoc", "contract", "arcp", "nsz", "afn"}
 WATER_DENSITY, GRAVITY = 1025.0, 9.80665
@@ -70,43 +69,6 @@ def hydrostatics(
         moments=sums[7:10].copy(),
         stiffness=density * gravity * _tangent(sums),
     )
-
-
-class LinearBuoyancy:
-    """Buoyancy by a restoring matrix: rho g V at the undisplaced centre, minus C p.
-
-    ``stiffness`` (6,6) is of buoyancy alone about ``reference_point`` (3,) m; p holds the
-    displacement from there and the rotation vector, both in axes turned by a heading.
-    """
-
-    def __init__(
-        self,
-        stiffness: ArrayLike,
-        volume: float,
-        center_of_buoyancy: ArrayLike,
-        reference_point: ArrayLike = (0.0, 0.0, 0.0),
-        density: float = WATER_DENSITY,
-        gravity: float = GRAVITY,
-    ) -> None:
-        self.stiffness = np.array(stiffness, dtype=float)
-        self.reference_point = np.array(reference_point, dtype=float)
-        x, y, _ = np.asarray(center_of_buoyancy, dtype=float) - self.reference_point
-        self.undisplaced = density * gravity * volume * np.array([0.0, 0.0, 1.0, y, -x, 0.0])
-
-    def loads(
-        self, position: ArrayLike, rotation: ArrayLike, heading: float = 0.0
-    ) -> tuple[Array, Array]:
-        """Force and moment (6,) about the frame's origin and stiffness (6,6), global axes.
-
-        ``position`` (3,) m and ``rotation`` (3,3) of the platform's frame; ``heading`` rad is
-        the yaw of the axes in which the matrix holds. The stiffness is right for small rotations.
-        """
-        turn = rotation_about(2, heading)
-        away = turn.T @ (np.asarray(position) - self.reference_point)
-        motion = np.concatenate([away, log_so3(turn.T @ np.asarray(rotation))])
-        both = np.kron(np.eye(2), turn)
-        wrench = both @ (self.undisplaced - self.stiffness @ motion)
-        return wrench, both @ self.stiffness @ both.T
 
 
 class NonlinearBuoyancy:
