@@ -28,8 +28,7 @@ def channels_of(case: LoadedCase) -> tuple[tuple[Channel, ...], Mapping[str, Arr
     still = Signal.constant(0.0)
     speed = Signal.constant(turbine.control.rated_rotor_speed)
     operation = PrescribedOperation(speed, (still,) * turbine.number_of_blades, still)
-    shortly = case.lasting(case.case.time_step_s) if case.case.sea is not None else case
-    afloat = afloat_of(shortly, turbine)
+    afloat = afloat_of(case, turbine, duration=settings.time_step_s)
     simulation = assembled(case, turbine, wind, operation, controller_of(case, turbine), afloat)
     let_go(simulation)
     return simulation.channels, simulation.coordinates

@@ -207,14 +207,22 @@ def _require_version(path: Path, origin: Mapping[str, Any]) -> None:
 
 
 def wind_samples(machine: Machine, duration: float) -> Array:
-    """The wind (times, places, 3) m/s at the hub and about it, during ``duration`` s."""
+    """The wind (times, places, 3) m/s at the hub and about it, during ``duration`` s.
+
+    Afloat a last place has the wave elevation m at the platform in its first column.
+    """
     turbine = machine.turbine
     reach = 0.7 * turbine.rotor_radius
     hub = np.array([0.0, 0.0, turbine.hub_height])
     around = [[0, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]]
     places = hub + reach * np.array(around, dtype=float)
     times = np.linspace(0.0, duration, WIND_TIMES).tolist()
-    return np.array([machine.wind.field.velocity(places, time) for time in times])
+    wind = np.array([machine.wind.field.velocity(places, time) for time in times])
+    if machine.afloat is None:
+        return wind
+    waves = np.zeros((len(times), 1, 3))
+    waves[:, 0, 0] = [machine.afloat.probe.record(time)["wave_elevation"] for time in times]
+    return np.concatenate([wind, waves], axis=1)
 
 
 def environment() -> dict[str, str]:

@@ -301,13 +301,13 @@ def controller_of(
     return controller(case, turbine, from_outside)
 
 
-def afloat_of(case: LoadedCase, turbine: Turbine) -> Afloat | None:
-    """The water of a case that has a sea."""
+def afloat_of(case: LoadedCase, turbine: Turbine, duration: float | None = None) -> Afloat | None:
+    """The water of a case that has a sea, made for its duration or another one, s."""
     if case.case.sea is None:
         return None
     from galerna.coupling.afloat import build_water
 
-    return build_water(case, turbine)
+    return build_water(case, turbine, duration)
 
 
 def _trim(

@@ -126,7 +126,11 @@ def _structure(value: Any) -> Any:
 
 def _sea(value: Any) -> Any:
     """``still`` stands for a sea without waves and current."""
-    return SeaOptions() if value == "still" else value
+    if not isinstance(value, str):
+        return value
+    if value != "still":
+        raise ValueError(f"expected 'still' or a block with waves and current, found {value!r}")
+    return SeaOptions()
 
 
 def _control(value: Any) -> Any:

@@ -40,6 +40,8 @@ from galerna.turbine.model import Tower, Turbine
 from galerna.turbine.platform import Platform
 from galerna.units import DEG, STANDARD_GRAVITY
 
+SAME_HULL = 0.05  #: of the volume, by which database and platform may differ
+SAME_GRAVITY = 1e-4
 SAME_DEPTH = 0.05  #: of the depth, by which database and sea may differ
 DEEP = 200.0  #: m: waves of 20 s and less do not feel the ground
 
@@ -110,8 +112,8 @@ class Afloat:
         return (*self.sea.warnings, *_of_models(self.models, "warnings"))
 
 
-def build_water(case: LoadedCase, turbine: Turbine) -> Afloat:
-    """The water of a case that has a sea.
+def build_water(case: LoadedCase, turbine: Turbine, duration: float | None = None) -> Afloat:
+    """The water of a case that has a sea, for its duration or another one, s.
 
     Raises InputError, with the line of the key, for what cannot be: waves that break, a database
     that lacks what they need, lines that cannot reach.
@@ -123,7 +125,7 @@ def build_water(case: LoadedCase, turbine: Turbine) -> Afloat:
         platform = _platform_of(turbine, settings.sea.water_depth_m)
         sea = build_sea(
             settings.sea,
-            settings.duration_s,
+            settings.duration_s if duration is None else duration,
             settings.seed,
             platform.water_depth,
             _gravity(settings),
@@ -133,10 +135,15 @@ def build_water(case: LoadedCase, turbine: Turbine) -> Afloat:
     with case.blame("platform"):
         path = _coefficients_file(case, turbine, platform, options)
         database = like_the_sea(read_database(path, platform), sea)
+        _require_hull(database, platform, path)
         fit = stored_radiation(path, database.reference_point, sea.density)
         carrier = carrier_of(platform, turbine.tower, options)
         models = _models(platform, database, sea, options, settings.sea, carrier, fit)
-        floating = _floating(settings, platform, models, options)
+        at_rest = models
+        if carrier.stations.part != "platform":
+            rigid = Carrier.rigid(platform)
+            at_rest = models | _carried(platform, sea, options, settings.sea, rigid)
+        floating = _floating(settings, platform, at_rest, options)
     return Afloat(sea, database, models, WaveProbe(sea, platform.reference_point[:2]), floating)
 
 
@@ -169,13 +176,25 @@ def _coefficients_file(
     raise InputError("hydrodynamics_file", what, hint)
 
 
+def _require_hull(base: HydroDatabase, platform: Platform, path: Path) -> None:
+    """InputError for coefficients of a hull that displaces another volume."""
+    stated = platform.displaced_volume
+    if stated and abs(base.displaced_volume / stated - 1.0) > SAME_HULL:
+        raise InputError(
+            "hydrodynamics_file",
+            f"{path.name} is of a hull that displaces {base.displaced_volume:.5g} m3, the platform "
+            f"displaces {stated:.5g} m3",
+            "name the file of this platform, or compute it (galerna hydro)",
+        )
+
+
 def like_the_sea(base: HydroDatabase, sea: Sea) -> HydroDatabase:
     """Coefficients for the sea's density; InputError where depth or gravity are others.
 
     All of them are proportional to the density. A depth may differ where both are deep for the
     waves of the lowest frequency, or by a twentieth.
     """
-    if abs(base.gravity / sea.gravity - 1.0) > 1e-3:
+    if abs(base.gravity / sea.gravity - 1.0) > SAME_GRAVITY:
         what = f"its gravity is {base.gravity:g} m/s2, the case's {sea.gravity:g} m/s2"
         raise InputError("hydrodynamics_file", what, "give the same to both")
     shallow = min(base.water_depth, sea.depth)
@@ -215,6 +234,18 @@ def _models(
             platform, database, sea, options, buoyancy=buoyancy, radiation=radiation
         )
     }
+    return models | _carried(platform, sea, options, of_sea, carrier)
+
+
+def _carried(
+    platform: Platform,
+    sea: Sea,
+    options: PlatformOptions,
+    of_sea: SeaOptions,
+    carrier: Carrier,
+) -> dict[str, LoadModel]:
+    """The loads that ride on a carrier's frames, by name."""
+    models: dict[str, LoadModel] = {}
     if of_sea.drag:
         models["drag"] = ViscousDrag(platform, sea, stretching=of_sea.stretching, carrier=carrier)
     if platform.mooring is not None and options.mooring != "none":
@@ -238,7 +269,10 @@ def carrier_of(platform: Platform, tower: Tower, options: PlatformOptions) -> Ca
 def _floating(
     settings: Case, platform: Platform, models: dict[str, LoadModel], options: PlatformOptions
 ) -> Floating | None:
-    """The platform that floats; None where it is moved."""
+    """The platform that floats; None where it is moved.
+
+    A spar is at rest as if it did not bend: all loads then act on the platform's own frame.
+    """
     start = options.start
     displaced = np.array([start.surge_m, start.sway_m, start.heave_m])
     turned = DEG * np.array([start.roll_deg, start.pitch_deg, start.yaw_deg])

@@ -205,12 +205,20 @@ TOWER_SECTION_DISPLACEMENTS = (
     length("tower_axial_displacement", "tower displacement along z", "TwHt{node}TDzt", ALONG_TOWER),
 )
 BASE = (
-    length("platform_surge", "displacement of the base along x", "PtfmSurge"),
-    length("platform_sway", "displacement of the base along y", "PtfmSway"),
-    length("platform_heave", "displacement of the base along z", "PtfmHeave"),
-    angle("platform_roll", "rotation of the base about x, the last of the turns", "PtfmRoll"),
-    angle("platform_pitch", "rotation of the base about y", "PtfmPitch"),
-    angle("platform_yaw", "rotation of the base about z, the first of the turns", "PtfmYaw"),
+    length("platform_surge", "platform surge: displacement of the base along x", "PtfmSurge"),
+    length("platform_sway", "platform sway: displacement of the base along y", "PtfmSway"),
+    length("platform_heave", "platform heave: displacement of the base along z", "PtfmHeave"),
+    angle(
+        "platform_roll",
+        "platform roll: rotation of the base about x, the last of the turns",
+        "PtfmRoll",
+    ),
+    angle("platform_pitch", "platform pitch: rotation of the base about y", "PtfmPitch"),
+    angle(
+        "platform_yaw",
+        "platform yaw: rotation of the base about z, the first of the turns",
+        "PtfmYaw",
+    ),
 )
 BASE_RATES = (
     Channel("platform_velocity_x", "m/s", "velocity of the base along x", (), "PtfmTVxi", "m/s"),

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.optimize import linear_sum_assignment
 from scipy.sparse.linalg import splu
 
 from galerna.contract import Array, Loads
@@ -83,24 +84,28 @@ def response(
 
 
 def _named(modes: Modes, node: int, center: Array) -> Iterator[tuple[int, tuple[str, Complex]]]:
-    """Numbers of the six modes that move the platform most, each with its name and motion."""
-    free: dict[str, tuple[float, int, Complex]] = {}
+    """Numbers of the six modes that move the platform most, each with a name of its own.
+
+    The names are those that fit all six best.
+    """
+    found = []
     for k in range(len(modes)):
-        shape = _motion(modes.shape[k], node, center)
-        size = float(np.linalg.norm(shape)) / float(np.abs(modes.shape[k] / ARM).max())
-        if size < MOVED or modes.frequency[k] < SLOWEST:
-            continue
-        name = DIRECTIONS[int(np.abs(shape).argmax())]
-        if name not in free or modes.frequency[k] < modes.frequency[free[name][1]]:
-            free[name] = size, k, shape
-    for name, (_, k, shape) in free.items():
-        yield k, (name, shape)
+        moved = float(np.abs(modes.shape[k, node] / ARM).max())
+        if modes.frequency[k] > SLOWEST and moved > MOVED * float(
+            np.abs(modes.shape[k] / ARM).max()
+        ):
+            found.append((k, _motion(modes.shape[k], node, center)))
+    found = found[: len(DIRECTIONS)]
+    likeness = np.array([np.abs(shape) for _, shape in found]).reshape(-1, len(DIRECTIONS))
+    for row, column in zip(*linear_sum_assignment(-likeness), strict=True):
+        yield found[row][0], (DIRECTIONS[column], found[row][1])
 
 
 def _motion(shape: Array, node: int, center: Array) -> Complex:
-    """Motion (6,) of the machine's mass centre with the platform, rotations times 50 m."""
+    """Motion (6,) of the machine's mass centre with the platform, of size 1; turns at 50 m."""
     moved, turned = shape[node, :3], shape[node, 3:]
-    return np.concatenate([moved + np.cross(turned, center), turned / ARM[3:]])
+    whole = np.concatenate([moved + np.cross(turned, center), turned / ARM[3:]])
+    return np.asarray(whole / max(float(np.linalg.norm(whole)), 1e-300))
 
 
 def _mass_center(machine: FlexibleMachine, state: State, node: int) -> Array:

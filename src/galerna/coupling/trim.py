@@ -88,7 +88,7 @@ class Trim:
         self._point = operating_point(machine.torque, strategy, rigid)
         if self._floating is not None:
             pitch = np.full(len(operation.pitch), self._point.pitch)
-            self._floating.settle(machine, self._point.rotor_speed, pitch)
+            self._settle(machine, self._point.rotor_speed, pitch)
             self._point = operating_point(machine.torque, strategy, self._point)
         return self._point.rotor_speed, self._point.pitch
 
@@ -106,7 +106,7 @@ class Trim:
         speed = float(operation.rotor_speed.value[0])
         if self._floating is not None:
             first_pitch = np.array([angle.value[0] for angle in operation.pitch])
-            self._floating.settle(steady, speed, first_pitch)
+            self._settle(steady, speed, first_pitch)
             self._floating.displace(steady)
         turned = SignalPath(operation.rotor_speed, integral=True)
         pitch = [SignalPath(angle) for angle in operation.pitch]
@@ -152,6 +152,13 @@ class Trim:
         )
         forces.follower += air
         return forces
+
+    def _settle(self, machine: SteadyMachine, rotor_speed: float, pitch: Array) -> None:
+        """Hold the machine where it floats; what cannot float is the platform's or the sea's."""
+        assert self._floating is not None
+        key = "sea" if self._settings.platform is None else "platform"
+        with self._case.blame(key):
+            self._floating.settle(machine, rotor_speed, pitch)
 
     def _point_holds(self, operation: PrescribedOperation) -> bool:
         """Whether an operation is the point that was found, not one that was given in part."""

@@ -19,6 +19,7 @@ Density = Callable[[Array], Array]
 
 _OF_WAVES = 0x5EA  #: sets the sea's random numbers apart from the wind's of the same seed
 LOWEST, HIGHEST = 0.5, 6.0  #: of the peak's frequency: 2e-9 of the variance below, 0.1 % above
+SHORTEST = 1200.0  #: s, of a run for which a sea is made
 LONGEST_STEP = 2.0 * pi / 600.0  #: rad/s between two waves: also short runs resolve the peak
 
 
@@ -43,8 +44,11 @@ class Band:
 
 
 def repeat_after(duration: float, peak_period: float) -> float:
-    """Period s of a sea that does not repeat in a run of ``duration`` s, nor near its end."""
-    return max(duration + 10.0 * peak_period, 2.0 * pi / LONGEST_STEP)
+    """Period s of a sea that does not repeat in a run of ``duration`` s, nor near its end.
+
+    Runs of up to ``SHORTEST`` s meet the beginning of the same sea.
+    """
+    return max(max(duration, SHORTEST) + 10.0 * peak_period, 2.0 * pi / LONGEST_STEP)
 
 
 def random_generator(seed: int) -> np.random.Generator:
