@@ -7,7 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
+from galerna.case import load as load_case
 from galerna.contract import Loads, Motion, Stations
+from galerna.coupling.afloat import build_water
 from galerna.coupling.flexible import FlexibleMachine
 from galerna.coupling.floating import Burden, Pose, WaterAtRest
 from galerna.errors import InputError
@@ -234,3 +236,25 @@ def test_tangents_of_a_load_that_stands_off_its_frame() -> None:
         ahead, behind = (arrived(s * step[:3], s * step[3:]).dead[1] for s in (1.0, -1.0))
         expected = arrived(np.zeros(3), np.zeros(3)).stiffness[1][:, k]
         assert -(ahead - behind) / (2 * h) == pytest.approx(expected, abs=1e-6)
+
+
+AFLOAT = {
+    "galerna": 1,
+    "turbine": "nrel5mw_oc3",
+    "duration_s": 1.0,
+    "time_step_s": 0.05,
+    "inflow": {"wind_speed_m_s": 12.0},
+    "sea": {"current": {"profile": "uniform", "speed_m_s": 1.0}},
+    "operation": {"rotor_speed_rpm": 0.0, "pitch_deg": 90.0},
+}
+
+
+def test_a_flexible_spar_floats_where_the_rigid_one_does() -> None:
+    """Drag and lines ride on frames down the spar; at rest they act as on the rigid body."""
+    pose = Pose(np.array([8.0, -1.0, -0.3]), exp_so3(np.array([0.01, 0.06, 0.02])))
+    rigid, bent = (
+        build_water(load_case(AFLOAT | {"platform": {"model": model}}), OC3).floating.water
+        for model in ("rigid", "flexible_spar")
+    )
+    for found, expected in zip(bent.total(pose), rigid.total(pose), strict=True):
+        assert found == pytest.approx(expected, rel=1e-12)
