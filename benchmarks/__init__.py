@@ -16,6 +16,7 @@ MODULES = (
     "machine",
     "machine_start",
     "machine_vortex",
+    "afloat",
     "discon",
 )
 
