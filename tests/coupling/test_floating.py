@@ -192,6 +192,16 @@ def test_a_base_follows_its_path_in_locked_directions_alone() -> None:
     assert floating(options).platform_motion()[0] == pytest.approx(3.0)
 
 
+def test_a_locked_direction_is_global_however_the_platform_turns() -> None:
+    held = Pose(np.zeros(3), np.eye(3))
+    options = TurbineOptions(**{**RIGID.__dict__, "base_motion": held, "base_locked": (0, 3)})
+    released = np.array([0.0, 1.0, 3.0, 0.0, 0.2, 0.0])
+    motion = march(floating(options), heave_only(), released, 0.1, 120)
+    assert np.abs(motion[:, 0]).max() < 1e-6
+    assert np.ptp(motion[:, 2]) > 3.0
+    assert np.ptp(motion[:, 4]) > 0.1  # 12 s of a swing of some 30 s, from 0.2 rad
+
+
 def test_forces_with_room_for_tangents_are_cleared() -> None:
     machine, water = floating(), Water()
     first = machine.forces([water.loads(0.0, machine.motions[0])])

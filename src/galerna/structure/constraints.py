@@ -16,6 +16,7 @@ from scipy.sparse import coo_matrix
 from galerna.contract import Array
 
 from .frames import exp_se3
+from .joints import Path
 from .pairs import Integers
 from .solvers import Rows
 
@@ -89,6 +90,25 @@ def lowest_point(R: Array, radius: float, axis: Array | None) -> Array:
         up = up - normal * normal[2]
         up = up / np.linalg.norm(up)
     return -radius * up
+
+
+class HeldAlong:
+    """Global components of a frame's position stay where a path (m and turn of time) has them.
+
+    A joint holds them in its own axes and those of the relative motion, which turn.
+    """
+
+    holonomic = True
+
+    def __init__(self, name: str, frame: str, components: tuple[int, ...], path: Path) -> None:
+        self.name, self.frames = name, (frame,)
+        self.components, self.path = list(components), path
+
+    def violation(self, time: float, x: Array, R: Array, v: Array) -> Array:
+        return np.asarray((x[0] - self.path(time)[0])[self.components])
+
+    def directions(self, time: float, x: Array, R: Array) -> Array:
+        return np.hstack([R[0], np.zeros((3, 3))])[self.components]
 
 
 class PrescribedVelocity:

@@ -22,6 +22,7 @@ from galerna.turbine.platform import Platform
 from .assembly import GROUND, Structure
 from .beam import discretise, straight, uniform
 from .bodies import rigid_body
+from .constraints import HeldAlong
 from .frames import rotation_about
 from .joints import ALL, Joint, Path
 
@@ -83,7 +84,7 @@ def add_platform(
     if model != "rigid":
         base, parts = _add_spar(structure, Spar.of(platform, tower, model), place)
     if path is not None:
-        structure.join(_moved_base("platform", place, path, locked))
+        _hold(structure, "platform", place, path, locked)
     return Foundation(
         base, {"platform": Part(["platform"], np.zeros(1), place, np.eye(3)), **parts}
     )
@@ -217,6 +218,18 @@ def _spans(spar: Spar) -> Iterator[Array]:
     for first, last in pairwise(stops):
         elements = int(np.ceil((last - first) * spar.below / LONGEST_ELEMENT))
         yield np.linspace(first, last, elements + 1)
+
+
+def _hold(
+    structure: Structure, frame: str, place: Array, path: Path, locked: tuple[int, ...]
+) -> None:
+    """Lock some directions of a frame that may turn: along the global axes, about its path's."""
+    along, about = (tuple(k for k in locked if k // 3 == kind) for kind in (0, 1))
+    if 0 < len(along) < 3 and len(about) < 3:
+        structure.constrain(HeldAlong("base, along", frame, along, path))
+        locked = about
+    if locked:
+        structure.join(_moved_base(frame, place, path, locked))
 
 
 def _moved_base(frame: str, place: Array, path: Path, locked: tuple[int, ...]) -> Joint:
