@@ -101,7 +101,8 @@ class HeldAlong:
     holonomic = True
 
     def __init__(self, name: str, frame: str, components: tuple[int, ...], path: Path) -> None:
-        self.name, self.frames = name, (frame,)
+        self.name = name
+        self.frames: tuple[str, ...] = (frame,)
         self.components, self.path = list(components), path
 
     def violation(self, time: float, x: Array, R: Array, v: Array) -> Array:
