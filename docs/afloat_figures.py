@@ -14,12 +14,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from docs.drawing import draw_all
 from galerna.report.style import BLUE, DOTS_PER_INCH, GREEN, GREY, VERMILION
 from validation import afloat_operation
 from validation.afloat_operation import QUANTITIES, series, spectrum
-from validation.framework import NotRunError
 
-HERE = Path(__file__).parent / "figures"
 RUNS = {"open loop": GREEN, "reference": BLUE, "redesign": VERMILION}
 NATURAL = (0.008, 0.034, 0.1, 0.47)  #: Hz: surge, pitch, waves, tower
 SPECTRA = ("surge", "platform pitch", "rotor speed", "blade pitch",
@@ -99,15 +98,8 @@ FIGURES: dict[str, Callable[[], Figure]] = {
 
 
 def draw(names: list[str] | None = None) -> Path:
-    """Draw the figures of these names, or all; what needs another program is left out."""
-    for name in names or FIGURES:
-        try:
-            figure = FIGURES[name]()
-        except NotRunError as reason:
-            print(f"{name}: left out, {reason}", file=sys.stderr)
-            continue
-        figure.savefig(HERE / f"{name}.png", dpi=DOTS_PER_INCH)
-    return HERE
+    """Draw the figures of these names, or all."""
+    return draw_all(FIGURES, names, DOTS_PER_INCH)
 
 
 if __name__ == "__main__":

@@ -12,14 +12,13 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 from matplotlib.figure import Figure
 
+from docs.drawing import draw_all
 from galerna.report.style import BLUE, DOTS_PER_INCH, GREEN, GREY, VERMILION
-from validation.framework import NotRunError
 from validation.machine import in_openfast_units
 from validation.machine_base_motion import FORE_AFT, FREQUENCY, OUT, TIP, moved, spectrum
 from validation.machine_land import LOADS, OPERATION, turbulent_run
 from validation.rotors import columns, table
 
-HERE = Path(__file__).parent / "figures"
 MOTIONS = {
     "fixed": (GREY, ()),
     "±2° at 0.034 Hz": (BLUE, ("pitch_deg", 4.0, FREQUENCY)),
@@ -72,15 +71,8 @@ FIGURES: dict[str, Callable[[], Figure]] = {
 
 
 def draw(names: list[str] | None = None) -> Path:
-    """Draw the figures of these names, or all; what needs another program is left out."""
-    for name in names or FIGURES:
-        try:
-            figure = FIGURES[name]()
-        except NotRunError as reason:
-            print(f"{name}: left out, {reason}", file=sys.stderr)
-            continue
-        figure.savefig(HERE / f"{name}.png", dpi=DOTS_PER_INCH)
-    return HERE
+    """Draw the figures of these names, or all."""
+    return draw_all(FIGURES, names, DOTS_PER_INCH)
 
 
 if __name__ == "__main__":

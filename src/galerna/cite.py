@@ -3,46 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
+
+from galerna.cite_water import references_of_water
+from galerna.publication import Reference
 
 if TYPE_CHECKING:
     from galerna.aero.bem.options import BemOptions
     from galerna.aero.vortex.options import VortexLatticeOptions
     from galerna.case import Case
-
-
-@dataclass(frozen=True)
-class Reference:
-    """One publication; ``venue`` is journal, volume and pages, or institution and number."""
-
-    key: str
-    authors: str
-    year: int
-    title: str
-    venue: str
-    doi: str = ""
-    kind: str = "article"
-
-    @property
-    def text(self) -> str:
-        """The reference in one line."""
-        end = f" doi:{self.doi}" if self.doi else ""
-        return f"{self.authors} ({self.year}): {self.title}. {self.venue}.{end}"
-
-    @property
-    def bibtex(self) -> str:
-        """The reference as a BibTeX entry."""
-        venue = {"article": "journal", "book": "publisher"}.get(self.kind, "institution")
-        fields = {
-            "author": self.authors.replace(", ", " and "),
-            "title": f"{{{self.title}}}",
-            "year": str(self.year),
-            venue: self.venue,
-            "doi": self.doi,
-        }
-        body = ",\n".join(f"  {name} = {{{value}}}" for name, value in fields.items() if value)
-        return f"@{self.kind}{{{self.key},\n{body}\n}}"
 
 
 _NING = Reference(
@@ -348,8 +317,6 @@ def _references(case: Case) -> Iterator[Reference]:
     if case.inflow.gust is not None:
         yield _IEC
     if case.sea is not None:
-        from galerna.cite_water import references_of_water
-
         yield from references_of_water(case.sea, case.platform)
     unused = _unused(case.aerodynamics)
     for option, publications in AERODYNAMICS[case.aerodynamics.model].items():

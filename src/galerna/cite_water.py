@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from galerna.cite import Reference
 from galerna.hydro.platform_options import PlatformOptions
+from galerna.publication import Reference
 
 if TYPE_CHECKING:
     from galerna.hydro.sea_options import SeaOptions
