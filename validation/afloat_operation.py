@@ -17,7 +17,7 @@ from .afloat_gains import TURBINE, controller
 from .machine import simulate
 
 WIND, INTENSITY = 18.0, 0.11
-#: Table 5.4; the amount is the text's 11 %, as alpha epsilon^(2/3) = 0.33 would give 15 % here
+#: Table 5.4; the amount is the text's 11 %, as alpha epsilon^(2/3) = 0.33 would give more here
 BOX: dict[str, Any] = {
     "kind": "mann",
     "turbulence_intensity": INTENSITY,
