@@ -203,8 +203,8 @@ STORY = """
 NREL 5 MW on the OC3 spar, flexible, 18 m/s without shear, the Mann box of Table 5.4 scaled to the
 text's 11 % (its alpha epsilon^(2/3) of 0.33 would give 13 to 14 % here), JONSWAP of 6 m and 10 s
 along the wind, viscous drag of the spar, none of the tower. The random numbers of wind and sea
-are not the dissertation's. Runs begin in the equilibrium of steady wind and still water, and all of them
-counts. Steps of 0.04 s: over 60 s, 0.02 s change no deviation of these by more than 0.2 %.
+are not the dissertation's. Runs begin in the equilibrium of steady wind and still water, and all
+of them counts. Steps of 0.04 s: over 60 s, 0.02 s change no deviation of these by more than 0.2 %.
 """
 OF_PEAKS = """
 A peak is a density twice that at the ends of a band about it, in spectra by Welch of 200 s
