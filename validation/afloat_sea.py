@@ -210,12 +210,7 @@ def rigid_and_flexible() -> Iterator[Check]:
         yield Check(
             f"standard deviation of {name} between 0.06 and 0.2 Hz: flexible beside rigid tower",
             band_deviation(time, soft, 0.06, 0.2), band_deviation(time, stiff, 0.06, 0.2),
-            f"{DISSERTATION}: both very close", 0.03, UNITS[name], True,
-        )  # fmt: skip
-        yield Check(
-            f"standard deviation of {name}: flexible beside rigid tower",
-            float(soft.std()), float(stiff.std()), f"{DISSERTATION}: both very close", None,
-            UNITS[name], True,
+            f"{DISSERTATION}: both very close", None, UNITS[name], True,
         )  # fmt: skip
     frequency = 2.0 * np.pi / PERIOD
     late = parked(
@@ -223,11 +218,19 @@ def rigid_and_flexible() -> Iterator[Check]:
     ).sel(time=slice(500.0, None))
     time = late["time"].values
     wave = harmonic(time, late["wave_elevation"].values, frequency)
+    wanted = linear_response(frequency, "flexible")
+    for name in IN_PLANE:
+        found = abs(harmonic(time, motion(late, name), frequency) / wave)
+        what = f"{name} per metre of a regular wave of 10 s, flexible tower"
+        yield Check(what, found, abs(wanted[name]), LINEAR, WITHOUT_DRAG, UNITS[name], True)
+        yield Check(
+            what, abs(wanted[name]), abs(linear_response(frequency)[name]),
+            "the same linear response with a rigid tower", None, UNITS[name], True,
+        )  # fmt: skip
     top = harmonic(time, late["tower_top_fore_aft_displacement"].values, frequency) / wave
-    wanted = abs(linear_response(frequency, "flexible")["tower top"])
     yield Check(
-        "tower top, fore-aft, per metre of a regular wave of 10 s", abs(top), wanted, LINEAR,
-        WITHOUT_DRAG, "m", True,
+        "tower top, fore-aft, per metre of a regular wave of 10 s", abs(top),
+        abs(wanted["tower top"]), LINEAR, WITHOUT_DRAG, "m", True,
     )  # fmt: skip
 
 
@@ -248,9 +251,9 @@ CASES = [
     Case(
         "afloat-flexible-tower", "afloat", "Rigid and flexible tower in waves",
         lambda: list(rigid_and_flexible()), 150.0,
-        "Platform motions are judged in the band of the waves. Over all frequencies, as was judged "
-        "at first, the flexible machine has 4 and 5 % less surge and pitch: it rings on at 0.033 "
-        "Hz after the waves have grown, where the rigid one has 0.034 Hz.",
+        "The flexible tower takes 4 % of the surge and 5 % of the pitch at the waves, in time as in "
+        "the linear response. The dissertation has both machines equal, on logarithmic plots; a "
+        "judgement by 3 % was tried first and failed.",
     ),
     Case(
         "afloat-steps", "afloat", "Time steps in an irregular sea", lambda: list(steps()), 120.0,
