@@ -251,8 +251,8 @@ CASES = [
     Case(
         "afloat-flexible-tower", "afloat", "Rigid and flexible tower in waves",
         lambda: list(rigid_and_flexible()), 150.0,
-        "The flexible tower takes 4 % of the surge and 5 % of the pitch at the waves, in time as in "
-        "the linear response. The dissertation has both machines equal, on logarithmic plots; a "
+        "The flexible tower takes 4 % of the surge and 5 % of the pitch at the waves, in time as "
+        "in the linear response. The dissertation has both machines equal, on logarithmic plots; a "
         "judgement by 3 % was tried first and failed.",
     ),
     Case(
