@@ -164,13 +164,13 @@ def row(check: Check) -> tuple[str, str, str, str, str, str]:
     unit = f" [{check.unit}]" if check.unit else ""
 
     def amount(x: float | None) -> str:
-        if x is None:
+        if x is None or math.isnan(x):
             return "-"
         return f"{100 * x:.3g} %" if check.relative else f"{x:.4g}"
 
     return (
         check.quantity + unit,
-        f"{check.reference:.6g}",
+        "-" if math.isnan(check.reference) else f"{check.reference:.6g}",
         f"{check.value:.6g}",
         amount(check.difference),
         amount(check.tolerance),
