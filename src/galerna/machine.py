@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, cast
 
@@ -99,7 +100,7 @@ class Machine:
             folder = flow_folder(result)
             return [FlowWriter(model, model.options.flow_output, folder, overwrite, since)]
 
-    @property
+    @cached_property
     def report(self) -> FloatingReport | None:
         """How its platform floats at rest; None where nothing floats."""
         floating = None if self.afloat is None else self.afloat.floating

@@ -12,7 +12,6 @@ from galerna.case import Case, LoadedCase
 from galerna.contract import Array, LoadModel, Stations
 from galerna.coupling.equilibrium import SteadyMachine
 from galerna.coupling.floating import (
-    DIRECTIONS,
     PASSES,
     SETTLED,
     Burden,
@@ -31,6 +30,7 @@ from galerna.hydro.platform_options import PlatformOptions
 from galerna.hydro.potential_flow import PotentialFlow
 from galerna.hydro.radiation import RadiationStateSpace
 from galerna.hydro.radiation.stored import stored_radiation
+from galerna.hydro.rigid import MODES
 from galerna.hydro.sea_options import SeaOptions
 from galerna.hydro.strips import Carrier
 from galerna.hydro.waves import Sea, WaveProbe, build_sea
@@ -282,7 +282,7 @@ def _floating(
             what = "locked and start are of a platform that floats; base_motion moves this one"
             raise InputError("platform", what, "leave one of them out")
         return None
-    locked = tuple(DIRECTIONS.index(name) for name in options.locked)
+    locked = tuple(MODES.index(name) for name in options.locked)
     place = np.array(platform.reference_point, dtype=float)
     return Floating(WaterAtRest(models, locked, place), Pose(place.copy(), np.eye(3)), by)
 

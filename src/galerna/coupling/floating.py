@@ -10,13 +10,13 @@ import numpy as np
 from galerna.contract import Array, LoadModel, Loads, Motion
 from galerna.coupling.flexible import FlexibleMachine
 from galerna.errors import ConvergenceError, InputError
+from galerna.hydro.rigid import MODES
 from galerna.structure.frames import exp_so3, hat
-from galerna.structure.system import State
+from galerna.structure.system import State, System
 
 NEWTON_STEPS = 50
 PASSES = 12  #: of the structure's loads and the pose, at most
 SETTLED = 1e-4  #: m and rad, by which a pose changes from one pass to the next
-DIRECTIONS = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 NEUTRAL = 1e-9  #: of the largest stiffness: less holds nothing
 LEFT_LOOSE = 1e-6  #: of the weight, that may act where nothing holds
 ARM = np.array([1.0, 1.0, 1.0, 0.02, 0.02, 0.02])  #: 1 and 1/m
@@ -129,7 +129,7 @@ class WaterAtRest:
         size = ARM[self._free]
         loose = axes[:, ~held].T @ (size * residual[self._free])
         if np.abs(loose).max(initial=0.0) > LEFT_LOOSE * scale:
-            where = DIRECTIONS[self._free[np.abs(axes[:, ~held]).max(axis=1).argmax()]]
+            where = MODES[self._free[np.abs(axes[:, ~held]).max(axis=1).argmax()]]
             what = f"nothing holds it in {where} against a mean load of {np.abs(loose).max():.3g} N"
             raise InputError("platform", what, "give it moorings, or lock that direction")
         step = np.zeros(6)
@@ -147,7 +147,7 @@ class WaterAtRest:
         unit = "N/m" if worst < 3 else "N m/rad"
         raise InputError(
             "platform",
-            f"it is unstable in {DIRECTIONS[worst]}: weight, buoyancy and moorings together "
+            f"it is unstable in {MODES[worst]}: weight, buoyancy and moorings together "
             f"restore {stiffness[worst, worst]:.4g} {unit}",
             "lower the centre of mass, or enlarge the waterplane",
         )
@@ -173,14 +173,19 @@ def burden_of(machine: FlexibleMachine, states: tuple[State, ...], pose: Pose) -
     total = float(system.weight[:, 0].sum())
     centers, wrenches = [], []
     for state in states:
-        first = system.weight[:, :1] * state.position + np.einsum(
-            "nij,nj->ni", state.rotation, system.weight[:, 1:]
-        )
-        centers.append(pose.rotation.T @ (first.sum(axis=0) / total - pose.position))
+        centers.append(pose.rotation.T @ (mass_center(system, state) - pose.position))
         wrenches.append(base_reaction(machine, state))
     burden = Burden(total, np.mean(centers, axis=0), np.mean(wrenches, axis=0))
     weight, _ = weight_wrench(burden, pose, system.gravity)
     return Burden(total, burden.center, burden.wrench - weight)
+
+
+def mass_center(system: System, state: State) -> Array:
+    """Centre (3,) m of all mass that weighs, global axes."""
+    first = system.weight[:, :1] * state.position + np.einsum(
+        "nij,nj->ni", state.rotation, system.weight[:, 1:]
+    )
+    return np.asarray(first.sum(axis=0) / float(system.weight[:, 0].sum()))
 
 
 def base_reaction(machine: FlexibleMachine, state: State) -> Array:

@@ -11,8 +11,9 @@ from scipy.sparse.linalg import splu
 
 from galerna.contract import Array, Loads
 from galerna.coupling.flexible import FlexibleMachine
-from galerna.coupling.floating import ARM, DIRECTIONS
+from galerna.coupling.floating import ARM, mass_center
 from galerna.hydro.database import Complex, HydroDatabase
+from galerna.hydro.rigid import MODES as DIRECTIONS
 from galerna.structure.modes import Modes, linearise, natural_modes
 from galerna.structure.system import Forces, State
 
@@ -43,7 +44,9 @@ def floating_modes(
     """
     base = machine.forces(loads)
     node = int(machine.parts.parts["platform"][0])
-    center = _mass_center(machine, state, node)
+    center = state.rotation[node].T @ (
+        mass_center(machine.system, state) - state.position[node]
+    )  # in the platform's axes
     found = []
     modes = natural_modes(machine.system, state, FIRST, _at(base, node, database, LOW))
     for k, (name, shown) in _named(modes, node, center):
@@ -106,14 +109,6 @@ def _motion(shape: Array, node: int, center: Array) -> Complex:
     moved, turned = shape[node, :3], shape[node, 3:]
     whole = np.concatenate([moved + np.cross(turned, center), turned / ARM[3:]])
     return np.asarray(whole / max(float(np.linalg.norm(whole)), 1e-300))
-
-
-def _mass_center(machine: FlexibleMachine, state: State, node: int) -> Array:
-    """The machine's mass centre (3,) m in the platform's axes."""
-    weight = machine.system.weight
-    first = weight[:, :1] * state.position + np.einsum("nij,nj->ni", state.rotation, weight[:, 1:])
-    middle = first.sum(axis=0) / weight[:, 0].sum()
-    return np.asarray(state.rotation[node].T @ (middle - state.position[node]))
 
 
 def _at(base: Forces, node: int, database: HydroDatabase, frequency: float) -> Forces:

@@ -11,8 +11,9 @@ import numpy as np
 from galerna.contract import Array, Loads
 from galerna.coupling.equilibrium import turn
 from galerna.coupling.flexible import FlexibleMachine
-from galerna.coupling.floating import DIRECTIONS, Burden, Pose, WaterAtRest
+from galerna.coupling.floating import Burden, Pose, WaterAtRest
 from galerna.coupling.floating_modes import FloatingMode, floating_modes
+from galerna.hydro.rigid import MODES
 from galerna.structure import TurbineOptions
 from galerna.structure.frames import roll_pitch_yaw
 from galerna.structure.statics import static_equilibrium
@@ -117,14 +118,14 @@ def modes_of(
 
 def modes_in_words(modes: list[FloatingMode]) -> str:
     """Names and frequencies."""
-    order = sorted(modes, key=lambda mode: DIRECTIONS.index(mode.name))
+    order = sorted(modes, key=lambda mode: MODES.index(mode.name))
     return ", ".join(f"{mode.name} {mode.frequency:.4g}" for mode in order) + " Hz"
 
 
 def _in_words(pose: Pose, place: Pose) -> str:
     shift = pose.position - place.position
     values = np.concatenate([shift, roll_pitch_yaw(pose.rotation) / DEG])
-    pairs = zip(DIRECTIONS, values, UNITS, strict=True)
+    pairs = zip(MODES, values, UNITS, strict=True)
     return ", ".join(f"{name} {value:z.3f} {unit}" for name, value, unit in pairs)
 
 

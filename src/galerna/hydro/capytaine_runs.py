@@ -25,7 +25,7 @@ from galerna.hydro.panels import Displacement, Panels, displacement
 from galerna.hydro.revolution import whole_of_revolution
 from galerna.hydro.rigid import MODES
 from galerna.hydro.waves.dispersion import wavenumber
-from galerna.units import DEG
+from galerna.units import DEG, SEA_WATER, STANDARD_GRAVITY
 
 HEADINGS: Array = np.asarray(np.arange(-180.0, 181.0, 30.0) * DEG)
 _IN_PLANE = (0, 2, 4)  # what a body of revolution is asked: surge, heave, pitch
@@ -80,8 +80,8 @@ def compute(
     *,
     reference_point: ArrayLike = (0.0, 0.0, 0.0),
     water_depth: float = np.inf,
-    water_density: float = 1025.0,
-    gravity: float = 9.80665,
+    water_density: float = SEA_WATER,
+    gravity: float = STANDARD_GRAVITY,
     displaced: Displacement | None = None,
     moving: Moving | None = None,
     progress: Progress | None = None,

@@ -12,6 +12,7 @@ from galerna.contract import Array
 from galerna.hydro.interpolation import curve_weights, heading_weights, whole_circle
 from galerna.hydro.rigid import constant_force_stiffness, shift, turn
 from galerna.hydro.waves.dispersion import wavenumber
+from galerna.units import SEA_WATER, STANDARD_GRAVITY
 
 Complex = NDArray[np.complex128]
 
@@ -42,8 +43,8 @@ class HydroDatabase:
     center_of_buoyancy: Array
     reference_point: Array
     water_depth: float
-    water_density: float = 1025.0
-    gravity: float = 9.80665
+    water_density: float = SEA_WATER
+    gravity: float = STANDARD_GRAVITY
     added_mass_zero: Array | None = None
     mean_drift: Array | None = None
     settings: Mapping[str, str | float] = field(default_factory=dict)

@@ -26,9 +26,9 @@ from numpy.typing import ArrayLike, NDArray
 from galerna.contract import Array
 from galerna.errors import InputError
 from galerna.hydro.hull import Hull
+from galerna.units import SEA_WATER, STANDARD_GRAVITY
 
 FAST = {"reassoc", "contract", "arcp", "nsz", "afn"}
-WATER_DENSITY, GRAVITY = 1025.0, 9.80665
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,8 +51,8 @@ class Hydrostatics:
 def hydrostatics(
     hull: Hull,
     reference_point: ArrayLike = (0.0, 0.0, 0.0),
-    density: float = WATER_DENSITY,
-    gravity: float = GRAVITY,
+    density: float = SEA_WATER,
+    gravity: float = STANDARD_GRAVITY,
 ) -> Hydrostatics:
     """Volume, waterplane and stiffness of a hull as it is described. Raises InputError if dry."""
     origin = np.asarray(reference_point, dtype=float)
@@ -82,8 +82,8 @@ class NonlinearBuoyancy:
         self,
         hull: Hull,
         reference_point: ArrayLike = (0.0, 0.0, 0.0),
-        density: float = WATER_DENSITY,
-        gravity: float = GRAVITY,
+        density: float = SEA_WATER,
+        gravity: float = STANDARD_GRAVITY,
     ) -> None:
         self.weight = density * gravity
         self._vertices = np.ascontiguousarray(hull.vertices - np.asarray(reference_point))

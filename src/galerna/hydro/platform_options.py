@@ -7,7 +7,6 @@ from typing import Literal
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat, NonNegativeFloat, PositiveFloat
 
 Direction = Literal["surge", "sway", "heave", "roll", "pitch", "yaw"]
-DIRECTIONS: tuple[Direction, ...] = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 
 
 class _Block(BaseModel):

@@ -5,14 +5,9 @@ from __future__ import annotations
 import numpy as np
 
 from galerna.contract import Array
+from galerna.structure.frames import hat
 
 MODES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
-
-
-def cross_matrix(arm: Array) -> Array:
-    """Matrix (3,3) of the cross product: ``cross_matrix(a) @ b`` is a x b."""
-    x, y, z = arm
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
 def shift(arm: Array) -> Array:
@@ -21,7 +16,7 @@ def shift(arm: Array) -> Array:
     Forces go the other way with its transpose: about A, T^T f of those about B.
     """
     matrix = np.eye(6)
-    matrix[:3, 3:] = -cross_matrix(np.asarray(arm, dtype=float))
+    matrix[:3, 3:] = -hat(np.asarray(arm, dtype=float))
     return matrix
 
 

@@ -21,7 +21,7 @@ from galerna.errors import InputError
 from galerna.hydro.database import Complex, HydroDatabase
 from galerna.hydro.database_checks import checked
 from galerna.hydro.wamit_checks import check_headings, check_phases, check_units
-from galerna.units import DEG
+from galerna.units import DEG, SEA_WATER, STANDARD_GRAVITY
 
 Column = Literal["period", "rad/s", "Hz"]
 _TURN = 2.0 * np.pi
@@ -43,8 +43,8 @@ def read_wamit(
     water_depth: float,
     reference_point: ArrayLike = (0.0, 0.0, 0.0),
     length: float = 1.0,
-    water_density: float = 1025.0,
-    gravity: float = 9.80665,
+    water_density: float = SEA_WATER,
+    gravity: float = STANDARD_GRAVITY,
     first_column: Column = "period",
     center_of_buoyancy: ArrayLike | None = None,
 ) -> HydroDatabase:

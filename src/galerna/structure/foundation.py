@@ -76,13 +76,14 @@ def add_platform(
     """
     place = np.array(platform.reference_point)
     center = np.subtract(platform.center_of_mass, place)
-    body = rigid_body(platform.mass, center, np.array(platform.inertia))
     base, parts = "platform", dict[str, Part]()
-    if model != "rigid":
-        body = Spar.of(platform, tower, model).body
-    structure.frame("platform", place, mass=body)
-    if model != "rigid":
-        base, parts = _add_spar(structure, Spar.of(platform, tower, model), place)
+    if model == "rigid":
+        body = rigid_body(platform.mass, center, np.array(platform.inertia))
+        structure.frame("platform", place, mass=body)
+    else:
+        spar = Spar.of(platform, tower, model)
+        structure.frame("platform", place, mass=spar.body)
+        base, parts = _add_spar(structure, spar, place)
     if path is not None:
         _hold(structure, "platform", place, path, locked)
     return Foundation(

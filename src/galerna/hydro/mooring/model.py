@@ -10,11 +10,11 @@ import numpy as np
 from galerna.contract import Array, Channel, Loads, Motion, Stations
 from galerna.hydro.strips import Carrier
 from galerna.turbine.platform import Mooring
-from galerna.units import STANDARD_GRAVITY
+from galerna.units import SEA_WATER, STANDARD_GRAVITY
 
 from .catenary import RESTING
 from .lines import on_body, place, tensions, turn_back
-from .network import SEA_WATER, Found, Network
+from .network import Found, Network
 
 _LINES = ("mooring_line",)
 CHANNELS = (

@@ -25,12 +25,13 @@ from galerna.contract import Array, Channel, Loads, Motion, Stations
 from galerna.errors import InputError, SimulationError
 from galerna.hydro.strips import Carrier
 from galerna.turbine.platform import Mooring
-from galerna.units import STANDARD_GRAVITY
+from galerna.units import SEA_WATER, STANDARD_GRAVITY
 
 from .catenary import RESTING
+from .lines import tensions
 from .model import CHANNELS, Fairleads, channel_values, coordinates, standing
 from .moordyn_input import SEGMENTS, input_text
-from .network import SEA_WATER, Found, Network
+from .network import Found, Network
 
 
 def require_moordyn() -> ModuleType:
@@ -167,8 +168,6 @@ class DynamicLines:
 
     def _lines_at_rest(self, motion: Motion) -> tuple[Array, Array, Array]:
         """Tensions N at the platform and at the other ends, lengths m on the seabed."""
-        from .lines import tensions
-
         lines = self._found(motion).lines
         anchor, fairlead = tensions(lines)
         return fairlead, anchor, lines[:, RESTING].copy()

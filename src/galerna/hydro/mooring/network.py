@@ -15,12 +15,11 @@ import numpy as np
 from galerna.contract import Array
 from galerna.errors import ConvergenceError
 from galerna.turbine.platform import LineType, Mooring, MooringNode
-from galerna.units import STANDARD_GRAVITY
+from galerna.units import SEA_WATER, STANDARD_GRAVITY
 
 from .checks import ON_THE_SEABED, check_mooring, check_spans
 from .lines import BED, Integers, add_own, assemble
 
-SEA_WATER = 1025.0  #: kg/m3, in which line types' weights are given
 STEPS, HALVES, BALANCED = 200, 40, 1e-11  #: the last is a share of the largest force
 LONGEST_STEP = 0.2  #: of the longest line
 SINKS = 0.01  #: m, how deep a connection sinks into the seabed under all that it may carry

@@ -15,9 +15,8 @@ from galerna.errors import InputError
 from galerna.hydro.waves.current import Current
 from galerna.hydro.waves.dispersion import wavenumber
 from galerna.hydro.waves.series import Complex, Series, samples_needed, tabulate
-from galerna.units import STANDARD_GRAVITY
+from galerna.units import SEA_WATER, STANDARD_GRAVITY
 
-SEA_WATER = 1025.0  #: kg/m3
 _WHOLE = 1e-9  #: of a frequency, by which it may miss its multiple
 
 

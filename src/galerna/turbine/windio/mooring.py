@@ -12,8 +12,7 @@ from galerna.turbine.platform import LineType, Mooring, MooringLine, MooringNode
 from galerna.turbine.windio.block import Block
 from galerna.turbine.windio.companion import Companion
 from galerna.turbine.windio.joints import Joints
-
-_WATER_DENSITY, _GRAVITY = 1025.0, 9.80665
+from galerna.units import SEA_WATER, STANDARD_GRAVITY
 
 _KINDS: dict[str, Literal["fixed", "vessel", "connection"]] = {
     "fixed": "fixed",
@@ -106,8 +105,8 @@ def _line_type(block: Block, stated: Block | None, notes: list[str]) -> LineType
         found |= {key: stated.number(key) for key in keys if stated.has(key)}
     if not {"mass", "stiffness"} <= found.keys():
         found = _chain(block, diameter, notes) | found
-    displaced = _WATER_DENSITY * np.pi / 4.0 * found["diameter"] ** 2
-    found.setdefault("weight", (found["mass"] - displaced) * _GRAVITY)
+    displaced = SEA_WATER * np.pi / 4.0 * found["diameter"] ** 2
+    found.setdefault("weight", (found["mass"] - displaced) * STANDARD_GRAVITY)
     return LineType(name=block.text("name"), **found, **_coefficients(block))
 
 
