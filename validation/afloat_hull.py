@@ -10,15 +10,16 @@ import numpy as np
 from galerna import turbine
 from galerna.errors import InputError
 from galerna.hydro.hull import build_hull
-from galerna.hydro.hydrostatics import GRAVITY, WATER_DENSITY, Hydrostatics, hydrostatics
+from galerna.hydro.hydrostatics import Hydrostatics, hydrostatics
 from galerna.turbine.summary import summary
+from galerna.units import SEA_WATER, STANDARD_GRAVITY
 
 from .framework import Case, Check, NotRunError
 
 OC3 = "NREL/TP-500-47535, Table 4-2"
 VOLTURNUS = "NREL/TP-5000-76773 as commonly quoted"
 HYDRODYN = "HydroDyn file of the UMaineSemi deck, IEA Wind TCP Task 37"
-WEIGHT = WATER_DENSITY * GRAVITY
+WEIGHT = SEA_WATER * STANDARD_GRAVITY
 PANELS = 2.5e-3  #: 60 panels inside a circle, as WAMIT's: sin(6 deg) / (6 deg) is 0.18 % less
 
 
@@ -64,9 +65,9 @@ def _balance(found: Hydrostatics) -> Iterator[Check]:
     machine = turbine.load("iea15mw_volturnus")
     rows = {row.quantity: row.value or 0.0 for row in summary(machine)}
     mass = sum(rows[name] for name in ("rotor_nacelle_mass", "tower_mass", "platform_mass"))
-    published = WEIGHT * 20206.0 - GRAVITY * 20093e3
+    published = WEIGHT * 20206.0 - STANDARD_GRAVITY * 20093e3
     source = f"{VOLTURNUS}: 20,206 m3 and 20,093 t in all"
-    pull = WEIGHT * found.volume - GRAVITY * mass
+    pull = WEIGHT * found.volume - STANDARD_GRAVITY * mass
     yield Check("buoyancy less weight", pull, published, source, unit="N")
 
 
