@@ -182,8 +182,8 @@ STORY = (
     "the extremes of the first cycles, their spacing and the decrement of the ranges."
 )
 LIGHTER = (
-    " Of the 0.12 m of heave here 6 mm come from 217 kg of 8065 t: ElastoDyn sums a blade's mass at "
-    "the middles of its 17 elements, to 17,537 kg, where the table's integral is 17,609 kg. So "
+    " Of the 0.12 m of heave here 6 mm come from 217 kg of 8065 t: ElastoDyn sums a blade's mass "
+    "at the middles of its 17 elements, to 17,537 kg, where the table's integral is 17,609 kg. So "
     "OpenFAST's machine floats 6 mm higher, starts 17 mm below its rest and not 11 mm, and heaves "
     "with the difference at its natural frequency. From as far below its own rest, ours heaves as "
     "OpenFAST's does; with that mass, the lines' vertical force is the same in both within 0.3 kN "
