@@ -16,6 +16,7 @@ from galerna.hydro.computation import (
 from galerna.hydro.netcdf import read_netcdf
 from galerna.hydro.rigid_machine import rigid_machine
 from galerna.turbine import library
+from galerna.turbine.summary import summary
 
 SHIPPED = library.FOLDER / "nrel5mw_oc3.hydro.nc"
 
@@ -101,3 +102,12 @@ def test_the_rigid_machine_weighs_what_the_turbine_does():
     assert height == pytest.approx(-78.0, abs=0.3)
     assert moving.restoring[4, 4] == pytest.approx(-mass * 9.80665 * height, rel=1e-6)
     np.testing.assert_allclose(moving.inertia, moving.inertia.T, rtol=1e-12)
+
+
+def test_the_rigid_machine_leaves_nothing_out():
+    """Its mass is the sum of the turbine's own figures: the yaw bearing is in it too."""
+    turbine = turbines.load("iea15mw_volturnus")
+    assert turbine.nacelle.yaw_bearing_mass > 20e3
+    figures = {row.quantity: row.value for row in summary(turbine)}
+    whole = sum(figures[f"{part}_mass"] for part in ("platform", "tower", "rotor_nacelle"))
+    assert rigid_machine(turbine).inertia[0, 0] == pytest.approx(whole, rel=1e-12)

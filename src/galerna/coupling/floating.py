@@ -10,8 +10,8 @@ import numpy as np
 from galerna.contract import Array, LoadModel, Loads, Motion
 from galerna.coupling.flexible import FlexibleMachine
 from galerna.errors import ConvergenceError, InputError
-from galerna.hydro.rigid import MODES
-from galerna.structure.frames import exp_so3, hat
+from galerna.hydro.rigid import MODES, constant_force_stiffness
+from galerna.structure.frames import exp_so3
 from galerna.structure.system import State, System
 
 NEWTON_STEPS = 50
@@ -162,9 +162,7 @@ class WaterAtRest:
 def weight_wrench(burden: Burden, pose: Pose, gravity: Array) -> tuple[Array, Array]:
     """Weight (6,) about the reference point in global axes, and its stiffness (6,6)."""
     arm, weight = pose.rotation @ burden.center, burden.mass * gravity
-    stiffness = np.zeros((6, 6))
-    stiffness[3:, 3:] = -hat(weight) @ hat(arm)
-    return np.concatenate([weight, np.cross(arm, weight)]), stiffness
+    return np.concatenate([weight, np.cross(arm, weight)]), constant_force_stiffness(weight, arm)
 
 
 def burden_of(machine: FlexibleMachine, states: tuple[State, ...], pose: Pose) -> Burden:

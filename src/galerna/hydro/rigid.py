@@ -31,10 +31,10 @@ def constant_force_stiffness(force: Array, arm: Array) -> Array:
     """Stiffness (6,6) of a force (3,) N that keeps its direction at a point of the body.
 
     The point is ``arm`` (3,) m from the reference point; the moment arm x F turns with the
-    body: minus its rate is (F . arm) 1 - arm F^T.
+    body: minus its rate is -hat(F) hat(arm) = (F . arm) 1 - arm F^T.
     """
     stiffness = np.zeros((6, 6))
-    stiffness[3:, 3:] = (force @ arm) * np.eye(3) - np.outer(arm, force)
+    stiffness[3:, 3:] = -hat(force) @ hat(arm)
     return stiffness
 
 

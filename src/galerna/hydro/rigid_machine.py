@@ -51,7 +51,12 @@ def _points(turbine: Turbine) -> list[tuple[float, Array]]:
     top = tower.axis[-1]
     shaft = np.array([np.cos(nacelle.tilt), 0.0, -np.sin(nacelle.tilt)])
     apex = top + np.array([0.0, 0.0, nacelle.shaft_height]) - nacelle.overhang * shaft
-    points = [(nacelle.mass, top + nacelle.center_of_mass), (hub.mass, apex)]
+    points = [
+        (nacelle.mass, top + nacelle.center_of_mass),
+        (nacelle.yaw_bearing_mass, top),
+        (hub.mass, apex),
+        *((mass, np.array([top[0], top[1], height])) for height, mass in tower.extra_masses),
+    ]
     if tower.structure is not None:
         masses, places = point_masses(tower.axis_span, tower.axis, tower.structure)
         points += list(zip(masses.tolist(), places, strict=True))

@@ -79,11 +79,10 @@ def standing(fairleads: Fairleads) -> Motion:
     return motion
 
 
-class MooringLines:
-    """Elastic catenaries that are at rest wherever the platform is (Jonkman, 2007), and a spring.
+class Moored:
+    """What all lines share: a network in ``depth`` m of water of ``density`` kg/m3, at rest.
 
-    ``depth`` m of water of ``density`` kg/m3; ``carrier`` is what the fairleads ride on. The
-    lines have no inertia, drag or damping. Loads and the moment's channels are about the
+    ``carrier`` is what the fairleads ride on. Loads and the moment's channels are about the
     frame's origin. Raises InputError for a mooring that cannot be, with the figures.
     """
 
@@ -103,15 +102,34 @@ class MooringLines:
         self.stations: tuple[Stations, ...] = self.fairleads.stations
         self.coordinates = coordinates(self.network)
         self.warnings = self.network.warnings
+        #: where the search for the connections' rest starts
         self._start = self.network.at(self.network.points).points
+
+    def _found(self, motion: Motion) -> Found:
+        """The lines at rest where the frame is."""
+        return self.network.at(self.fairleads.points(motion, self._start))
+
+
+class MooringLines(Moored):
+    """Elastic catenaries that are at rest wherever the platform is (Jonkman, 2007), and a spring.
+
+    The lines have no inertia, drag or damping. See ``Moored``.
+    """
+
+    def __init__(
+        self,
+        mooring: Mooring,
+        carrier: Carrier,
+        depth: float,
+        density: float = SEA_WATER,
+        gravity: float = STANDARD_GRAVITY,
+    ) -> None:
+        super().__init__(mooring, carrier, depth, density, gravity)
         self._moved, self._total = self._found(standing(self.fairleads)), np.zeros(6)
         self._shown = self._moved, self._total
 
     def begin_step(self, time: float, dt: float, motion: Motion) -> None:
         """Nothing to prepare."""
-
-    def _found(self, motion: Motion) -> Found:
-        return self.network.at(self.fairleads.points(motion, self._start))
 
     def loads(self, time: float, motion: Motion) -> Loads:
         """Force, moment and stiffness of all lines about the frame's origin."""

@@ -14,14 +14,13 @@ import tempfile
 import weakref
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from math import inf
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 
-from galerna.contract import Array, Channel, Loads, Motion, Stations
+from galerna.contract import Array, Loads, Motion
 from galerna.errors import InputError, SimulationError
 from galerna.hydro.strips import Carrier
 from galerna.turbine.platform import Mooring
@@ -29,9 +28,9 @@ from galerna.units import SEA_WATER, STANDARD_GRAVITY
 
 from .catenary import RESTING
 from .lines import tensions
-from .model import CHANNELS, Fairleads, channel_values, coordinates, standing
+from .model import Moored, channel_values, standing
 from .moordyn_input import SEGMENTS, input_text
-from .network import Found, Network
+from .network import Found
 
 
 def require_moordyn() -> ModuleType:
@@ -132,15 +131,12 @@ def _last(said: list[str]) -> str:
     return "; ".join(line.strip() for line in "".join(said).splitlines()[-3:])
 
 
-class DynamicLines:
+class DynamicLines(Moored):
     """Lines with inertia, drag and damping in still water, by MoorDyn (extra ``moordyn``).
 
-    Arguments as of MooringLines; ``segments`` per line. Before the first step, and for the
-    platform's equilibrium, the lines are catenaries. Waves and current do not reach them.
+    ``segments`` per line. Before the first step, and for the platform's equilibrium, the lines
+    are catenaries. Waves and current do not reach them. See ``Moored``.
     """
-
-    channels: tuple[Channel, ...] = CHANNELS
-    largest_step: float = inf
 
     def __init__(
         self,
@@ -153,16 +149,11 @@ class DynamicLines:
         segments: int = SEGMENTS,
     ) -> None:
         require_moordyn()
-        self.network = Network.of(mooring, depth, density, gravity)
-        self.fairleads = Fairleads(self.network, carrier)
-        self.stations: tuple[Stations, ...] = self.fairleads.stations
-        self.coordinates = coordinates(self.network)
-        self.warnings = self.network.warnings
+        super().__init__(mooring, carrier, depth, density, gravity)
         self._text = input_text(self.network, density, gravity, segments)
-        self._rest = self.network.at(self.network.points).points
         self._system: _System | None = None
         self._accepted = b""
-        self._from, self._time, self._dt = self._rest[self.network.vessel], 0.0, 0.0
+        self._from, self._time, self._dt = self._start[self.network.vessel], 0.0, 0.0
         self._total, self._shown = np.zeros(6), np.zeros(6)
         self._lines = self._lines_at_rest(standing(self.fairleads))
 
@@ -172,16 +163,13 @@ class DynamicLines:
         anchor, fairlead = tensions(lines)
         return fairlead, anchor, lines[:, RESTING].copy()
 
-    def _found(self, motion: Motion) -> Found:
-        return self.network.at(self.fairleads.points(motion, self._rest))
-
     def static_loads(self, motion: Motion) -> Loads:
         """The loads of the lines at rest."""
         return self.fairleads.loads(motion, self._found(motion))
 
     def begin_step(self, time: float, dt: float, motion: Motion) -> None:
         """Note where the step begins; the first one lets MoorDyn's lines settle there."""
-        self._from = self.fairleads.points(motion, self._rest)[self.network.vessel]
+        self._from = self.fairleads.points(motion, self._start)[self.network.vessel]
         self._time, self._dt = time, dt
         if self._system is None:
             velocity = self.fairleads.velocity(motion)
