@@ -12,7 +12,6 @@ from galerna.aero.vortex.convection import due_rows, periods
 from galerna.aero.vortex.cores import VortexCore
 from galerna.aero.vortex.far_wake import FarWake
 from galerna.aero.vortex.field import InducedField
-from galerna.aero.vortex.flow import control_points
 from galerna.aero.vortex.surface import Surface
 from galerna.aero.vortex.unsteady import UnsteadyLattice, UnsteadyOptions
 from galerna.aero.vortex.wake import Wake, helical_wake
@@ -41,10 +40,9 @@ def field(sheets, precision):  # type: ignore[no-untyped-def]
 
 def errors(wake: Wake, surfaces: list[Surface], monkeypatch: pytest.MonkeyPatch) -> Array:
     """Errors (P,) of the interpolated velocity over its root mean square."""
-    monkeypatch.setattr("galerna.aero.vortex.far_wake.WORTH", 0.0)
-    points = control_points(surfaces)
-    smooth = FarWake(wake, CORE, field).velocity(surfaces, points)
-    exact = FarWake(wake, CORE, field, smooth=False).velocity(surfaces, points)
+    monkeypatch.setattr("galerna.aero.vortex.chordwise.WORTH", 0.0)
+    smooth = FarWake(wake, CORE, field).velocity(surfaces)
+    exact = FarWake(wake, CORE, field, smooth=False).velocity(surfaces)
     assert np.abs(smooth - exact).max() > 0.0
     return np.linalg.norm(smooth - exact, axis=1) / np.sqrt((exact**2).sum(axis=1).mean())
 

@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from galerna.aero.vortex.chordwise import AlongChords, ChordPoints
 from galerna.aero.vortex.cores import VortexCore
 from galerna.aero.vortex.field import InducedField
 from galerna.aero.vortex.mirror import MirrorPlane
@@ -112,7 +113,7 @@ def edge_flow(
     """The flow with a wake whose first panels depend on the circulation sought."""
     needed = _needed_velocity(surfaces, wind + far_velocity) - influence.known
     shares = influence.shares
-    solve = partial(system.solve_with_strips, strips=shares) if shares.any() else system.solve
+    solve = partial(system.solve, strips=shares if shares.any() else None)
     solved = solve(needed)
     if separation is not None:
         solved = separation.correct(surfaces, wind, solved, solve)
@@ -134,7 +135,7 @@ def strip_flow(
     strips = strip_velocities(wake, control_points(surfaces), core, mirror)
     normals = collocation_normals(surfaces)
     normal_strips = np.einsum("pni,pi->pn", strips[: len(normals)], normals)
-    solve = partial(system.solve_with_strips, strips=normal_strips)
+    solve = partial(system.solve, strips=normal_strips)
     circulation = solve(_needed_velocity(surfaces, wind))
     if separation is not None:
         circulation = separation.correct(surfaces, wind, circulation, solve)
@@ -142,13 +143,33 @@ def strip_flow(
     return Flow(split_panels(circulation, surfaces), wind, wake_velocity)
 
 
-def segment_air(surfaces: Sequence[Surface], flow: Flow, mirror: MirrorPlane | None) -> Array:
-    """Velocity (S,3) m/s of the air, all vortices included, relative to the loaded segments."""
-    bound = [Sheet(s.lattice.vertices, g) for s, g in zip(surfaces, flow.circulation, strict=True)]
-    points = segment_points(surfaces)
-    air = (flow.wind + flow.wake_velocity)[-len(points) :]
-    induced = InducedField([*bound, *flow.near], mirror=mirror).velocity(points)
-    return air + induced - segment_velocities(surfaces)
+class NearField:
+    """Velocity at the loaded segments by what is bound and by the first panels of the wakes.
+
+    With ``smooth`` the vortices of one blade are interpolated along the chords of another.
+    """
+
+    def __init__(self, mirror: MirrorPlane | None, smooth: bool) -> None:
+        self._mirror, self._smooth = mirror, smooth
+        self._sums: AlongChords | None = None
+
+    def velocity(self, surfaces: Sequence[Surface], flow: Flow) -> Array:
+        """Velocity (S,3) m/s; what was near to what at the first call is held to be so again."""
+        bound = zip(surfaces, flow.circulation, strict=True)
+        sheets = [Sheet(s.lattice.vertices, g) for s, g in bound] + list(flow.near)
+        targets = [ChordPoints(s, collocated=False) for s in surfaces]
+        if self._sums is None:
+            self._sums = AlongChords(targets, sheets, self._field, self._smooth)
+        return np.concatenate(self._sums.velocity(targets, sheets, near="double"))
+
+    def _field(self, sheets: Sequence[Sheet], precision: str) -> InducedField:
+        return InducedField(sheets, precision=precision, mirror=self._mirror)
+
+
+def segment_air(surfaces: Sequence[Surface], flow: Flow, near: Array) -> Array:
+    """Velocity (S,3) m/s of the air relative to the loaded segments, that of `NearField` added."""
+    air = (flow.wind + flow.wake_velocity)[-len(near) :]
+    return air + near - segment_velocities(surfaces)
 
 
 def _needed_velocity(surfaces: Sequence[Surface], air: Array) -> Array:

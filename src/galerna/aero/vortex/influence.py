@@ -9,8 +9,10 @@ from galerna.aero.vortex.biot_savart import enter
 from galerna.aero.vortex.segments import (
     LANES,
     NUMBERS,
+    add_segment,
     add_tile,
     make_block,
+    see_vertex,
     set_segment,
     whole_vectors,
 )
@@ -26,14 +28,25 @@ def normal_influence(
     The rings stand between vertices (m+1,n+1,3) m; ring (i,j) is column i*n+j. ``core_radius`` m
     stands on the vertices, or anything that broadcasts to them.
     """
-    vertices, points, normals = (
-        np.ascontiguousarray(a, float) for a in (vertices, points, normals)
-    )
+    normals = np.ascontiguousarray(normals, float)
+    return _ring_influence(vertices, points, normals[:, None], core_radius)[:, 0]
+
+
+def ring_influence(vertices: Array, points: Array, core_radius: Array | float = 0.0) -> Array:
+    """Velocity (k,3,m*n) 1/m at points (k,3) m of each ring, as in `normal_influence`."""
+    axes = np.broadcast_to(np.eye(3), (len(points), 3, 3))
+    return _ring_influence(vertices, points, axes, core_radius)
+
+
+def _ring_influence(
+    vertices: Array, points: Array, directions: Array, core_radius: Array | float
+) -> Array:
+    """Velocity (k,d,m*n) 1/m of each ring along the directions (k,d,3) of each point."""
     core = np.ascontiguousarray(np.broadcast_to(core_radius, vertices.shape[:2]), float)
-    table = _unit_table(vertices, core)
+    table = _unit_table(np.ascontiguousarray(vertices, float), core)
     rows, columns = vertices.shape[0] - 1, vertices.shape[1] - 1
-    influence = np.zeros((len(points), rows * columns))
-    _add_rings(table, rows, columns, points, normals, influence)
+    influence = np.empty((*directions.shape[:2], rows * columns))
+    _set_rings(table, rows, columns, np.ascontiguousarray(points, float), directions, influence)
     return influence
 
 
@@ -71,37 +84,65 @@ def _unit_table(vertices, core):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True, parallel=True, error_model="numpy", fastmath=FASTMATH)
-def _add_rings(table, rows, columns, points, normals, influence):  # type: ignore[no-untyped-def]
+def _set_rings(table, rows, columns, points, directions, influence):  # type: ignore[no-untyped-def]
     for number in prange((len(points) + LANES - 1) // LANES):
         low = number * LANES
         high = min(low + LANES, len(points))
-        block = make_block(2, table)
-        origin, lanes = enter(points[low:high], block), whole_vectors(high - low)
-        for i in range(rows + 1):
-            for j in range(columns + 1):
-                k, ring = i * (columns + 1) + j, i * columns + j
-                if j < columns:
-                    add_tile(table, k, 1, 1, 2, (True, False), origin, lanes, block)
-                    below, above = ring if i < rows else -1, ring - columns
-                    _share(block, normals[low:high], below, above, influence[low:high])
-                if i < rows:
-                    add_tile(table, k, columns + 1, 2, 1, (False, True), origin, lanes, block)
-                    left, right = ring - 1 if j > 0 else -1, ring if j < columns else -1
-                    _share(block, normals[low:high], left, right, influence[low:high])
+        _set_block(
+            table, rows, columns, points[low:high], directions[low:high], influence[low:high]
+        )
 
 
 @njit(cache=True, error_model="numpy", fastmath=FASTMATH)
-def _share(block, normals, plus, minus, influence):  # type: ignore[no-untyped-def]
-    """Give the velocity along the normals to the two rings of a segment (negative: none)."""
-    velocity = block.velocity
-    for n in range(len(normals)):
-        w = velocity[n] * normals[n, 0]
-        w += velocity[LANES + n] * normals[n, 1]
-        w += velocity[2 * LANES + n] * normals[n, 2]
-        if plus >= 0:
-            influence[n, plus] += w
-        if minus >= 0:
-            influence[n, minus] -= w
+def _set_block(table, rows, columns, points, directions, influence):  # type: ignore[no-untyped-def]
+    """The influence (k,d,rings) on up to LANES points, gathered with the points as lanes."""
+    width = columns + 1
+    block = make_block(width, table)
+    origin, lanes = enter(points, block), whole_vectors(len(points))
+    along = _by_lanes(directions)
+    found = np.zeros((directions.shape[1], rows * columns, LANES))
+    for i in range(rows + 1):
+        now, before = (i % 2) * width, ((i + 1) % 2) * width
+        for j in range(width):
+            numbers, ring = table[i * width + j], i * columns + j
+            place = see_vertex(numbers, origin, now + j, lanes, block)
+            if j > 0:
+                add_segment(numbers[3:9], place, now + j - 1, now + j, lanes, block)
+                below, above = ring - 1 if i < rows else -1, ring - 1 - columns
+                _share(block.velocity, along, lanes, below, above, found)
+            if i > 0:
+                add_segment(numbers[9:15], place, before + j, now + j, lanes, block)
+                left, right = ring - columns - 1 if j > 0 else -1, ring - columns
+                _share(block.velocity, along, lanes, left, right if j < columns else -1, found)
+    for n in range(len(points)):
+        for a in range(directions.shape[1]):
+            for ring in range(rows * columns):
+                influence[n, a, ring] = found[a, ring, n]
+
+
+@njit(cache=True, error_model="numpy", fastmath=FASTMATH)
+def _by_lanes(directions):  # type: ignore[no-untyped-def]
+    """Directions (d,3,LANES) from those (k,d,3) of up to LANES points."""
+    lanes = np.zeros((directions.shape[1], 3, LANES))
+    for n in range(len(directions)):
+        for a in range(directions.shape[1]):
+            for i in range(3):
+                lanes[a, i, n] = directions[n, a, i]
+    return lanes
+
+
+@njit(cache=True, error_model="numpy", fastmath=FASTMATH)
+def _share(velocity, along, lanes, plus, minus, found):  # type: ignore[no-untyped-def]
+    """Give the velocity along the directions to the two rings of a segment (negative: none)."""
+    for a in range(len(along)):
+        for n in range(lanes):
+            w = velocity[n] * along[a, 0, n]
+            w += velocity[LANES + n] * along[a, 1, n]
+            w += velocity[2 * LANES + n] * along[a, 2, n]
+            if plus >= 0:
+                found[a, plus, n] += w
+            if minus >= 0:
+                found[a, minus, n] -= w
     velocity[:] = 0.0
 
 

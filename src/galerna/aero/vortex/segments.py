@@ -93,30 +93,43 @@ def add_tile(table, first, stride, rows, columns, borders, origin, lanes, block)
     another's. The block's points count from ``origin`` (3,) m; the first ``lanes`` of
     them are served, see `whole_vectors`.
     """
-    points, velocity, distances = block
-    number = points.dtype.type
     for i in range(rows):
         now, before = (i % 2) * columns, ((i + 1) % 2) * columns
         for j in range(columns):
             k = first + i * stride + j
-            x, y, z = table[k, 0] - origin[0], table[k, 1] - origin[1], table[k, 2] - origin[2]
-            _distances(points, distances, now + j, number(x), number(y), number(z), lanes)
-            if j > 0 and (i > 0 or borders[0]) and table[k, 8] != 0.0:
-                ex, ey, ez = table[k, 3], table[k, 4], table[k, 5]
-                _velocity(
-                    points, distances, velocity, now + j - 1, now + j,
-                    number(ex), number(ey), number(ez),
-                    number(ey * z - ez * y), number(ez * x - ex * z), number(ex * y - ey * x),
-                    number(table[k, 6]), number(table[k, 7]), number(table[k, 8]), lanes,
-                )  # fmt: skip
-            if i > 0 and (j > 0 or borders[1]) and table[k, 14] != 0.0:
-                ex, ey, ez = table[k, 9], table[k, 10], table[k, 11]
-                _velocity(
-                    points, distances, velocity, before + j, now + j,
-                    number(ex), number(ey), number(ez),
-                    number(ey * z - ez * y), number(ez * x - ex * z), number(ex * y - ey * x),
-                    number(table[k, 12]), number(table[k, 13]), number(table[k, 14]), lanes,
-                )  # fmt: skip
+            place = see_vertex(table[k], origin, now + j, lanes, block)
+            if j > 0 and (i > 0 or borders[0]):
+                add_segment(table[k, 3:9], place, now + j - 1, now + j, lanes, block)
+            if i > 0 and (j > 0 or borders[1]):
+                add_segment(table[k, 9:15], place, before + j, now + j, lanes, block)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FASTMATH)
+def see_vertex(numbers, origin, slot, lanes, block):  # type: ignore[no-untyped-def]
+    """Put the points' distances from a vertex into a slot; returns its place from the origin."""
+    x, y, z = numbers[0] - origin[0], numbers[1] - origin[1], numbers[2] - origin[2]
+    number = block.points.dtype.type
+    _distances(block.points, block.distances, slot, number(x), number(y), number(z), lanes)
+    return x, y, z
+
+
+@njit(cache=True, error_model="numpy", fastmath=FASTMATH)
+def add_segment(numbers, place, start, end, lanes, block):  # type: ignore[no-untyped-def]
+    """Add what a segment, see `set_segment`, induces that ends at a place (3) m.
+
+    ``start`` and ``end`` are the slots that hold the distances from its ends.
+    """
+    if numbers[5] == 0.0:
+        return
+    x, y, z = place
+    ex, ey, ez = numbers[0], numbers[1], numbers[2]
+    number = block.points.dtype.type
+    _velocity(
+        block.points, block.distances, block.velocity, start, end,
+        number(ex), number(ey), number(ez),
+        number(ey * z - ez * y), number(ez * x - ex * z), number(ex * y - ey * x),
+        number(numbers[3]), number(numbers[4]), number(numbers[5]), lanes,
+    )  # fmt: skip
 
 
 def _fraction(d2: float, r1: float, r2: float, l2: float, least: float) -> tuple[float, float]:

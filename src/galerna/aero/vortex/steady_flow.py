@@ -84,7 +84,7 @@ class SteadyFlow:
         relative = self.air(points) - collocation_velocities(self.surfaces)
         onset = np.einsum("ka,ka->k", relative, normals)
         strips = np.einsum("kja,ka->kj", self._strips(points), normals)
-        flat = self.system.solve_with_strips(-onset, strips)
+        flat = self.system.solve(-onset, strips)
         self.circulation = split_panels(flat, self.surfaces)
 
     def shift(self, surface: int, row: int, move: Array, turn: Array) -> None:

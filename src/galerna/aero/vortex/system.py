@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import lu_factor, lu_solve
-from scipy.sparse.linalg import LinearOperator, gmres
 
 from galerna.aero.vortex.influence import normal_influence
 from galerna.aero.vortex.mirror import MirrorPlane
@@ -17,15 +16,25 @@ from galerna.contract import Array
 from galerna.errors import ConvergenceError
 
 RIGID = 1e-9  #: departure from a rigid motion, over the size of all surfaces, that still is one
-GMRES_TOLERANCE = 1e-12  #: of the residual over the right side
-GMRES_ITERATIONS = 12  #: after so many a new factorisation costs less
+TOLERANCE = 1e-9  #: of the residual over the right side
+REFINEMENTS = 4  #: after so many a new factorisation costs less
+GAIN = 0.3  #: of a refinement that is worth going on: residual after it over that before
+
+
+@dataclass(frozen=True, eq=False)
+class Rings:
+    """The influence (N,N) of the rings of surfaces as they stood, corners (V,3) of all of them."""
+
+    corners: Array
+    influence: Array
 
 
 @dataclass(frozen=True, eq=False)
 class Factor:
-    """The factorised matrix of surfaces as they stood, corners (V,3) of all of them."""
+    """The factorised matrix of rings and, if any, the ``strips`` (N,n) of a wake behind them."""
 
-    corners: Array
+    rings: Rings
+    strips: Array | None
     lu: tuple[Array, Array]
 
 
@@ -33,9 +42,9 @@ class BoundSystem:
     """The influence matrix of the bound rings and what was learnt from factorising it.
 
     ``place`` the surfaces, then ``solve`` as often as needed. While they keep their shape, as a
-    rigid rotor does that turns, the factorisation is used again; when they deform, it
-    preconditions GMRES and is replaced when that takes too many iterations. A replacement is
-    on trial until ``accept``; ``reject`` returns to the accepted one.
+    rigid rotor does that turns, their influence is used again. Circulations are refined
+    iteratively with an earlier factorisation, which is replaced when it no longer serves. A
+    replacement is on trial until ``accept``; ``reject`` returns to the accepted one.
 
     With a ``symmetry`` the surfaces given are one sector of the whole; a ``mirror`` adds
     the image of all.
@@ -47,97 +56,75 @@ class BoundSystem:
         self.symmetry, self.mirror = symmetry, mirror
         self._accepted: Factor | None = None
         self._factor: Factor | None = None
-        self._matrix: Array | None = None
+        self._rings: Rings | None = None
         self._surfaces: list[Surface] = []
         self._guess: Array | None = None
-        self._kept_inverse: tuple[Factor | None, Array, Callable[[Array], Array]] | None = None
-        self.iterations = 0  #: of GMRES in the last ``solve``; 0 when none were needed
+        self.refinements = 0  #: in the last ``solve``; 0 where a factorisation was exact
         self.factorisations = 0  #: so far
 
-    def place(self, surfaces: Sequence[Surface], often: bool = False) -> None:
-        """Take the surfaces where they are now; factorise if ``solve`` is to be called often."""
+    def place(self, surfaces: Sequence[Surface]) -> None:
+        """Take the surfaces where they are now."""
         self._surfaces = list(surfaces)
-        self._matrix = None
-        if self._factor is None:
-            self._factorise(self.influence())
-        elif not self._moved_rigidly(self._factor.corners):
-            self._matrix = self.influence()
-            if often:
-                self._factorise(self._matrix)
+        if self._factor is not None and self._moved_rigidly(self._factor.rings.corners):
+            self._rings = self._factor.rings
+        else:
+            self._rings = Rings(self._corners(), self.influence())
 
     def guess(self, circulation: Array) -> None:
-        """Begin the search for circulations of deformed surfaces with these (N,) m2/s."""
+        """Begin the search for circulations from these (N,) m2/s."""
         self._guess = circulation
 
     def influence(self) -> Array:
         """Normal velocity (N,N) 1/m at each collocation point by each ring of circulation 1."""
         points = collocation_points(self._surfaces)
         normals = collocation_normals(self._surfaces)
-        columns = []
+        influence = np.zeros((len(points), len(points)))
+        first = 0
         for surface in self._surfaces:
-            column = np.zeros((len(points), surface.shape[0] * surface.shape[1]))
+            last = first + surface.shape[0] * surface.shape[1]
+            own = influence[:, first:last]
             for vertices in self._images(surface.lattice.vertices):
-                column += normal_influence(vertices, points, normals)
+                own += normal_influence(vertices, points, normals)
                 if self.mirror is not None:
-                    reflected = self.mirror.reflect_vectors(normals)
-                    column += normal_influence(
-                        vertices, self.mirror.reflect_points(points), reflected
-                    )
-            columns.append(column)
-        return np.hstack(columns)
+                    image = self.mirror.reflect_points(points), self.mirror.reflect_vectors(normals)
+                    own += normal_influence(vertices, *image)
+            first = last
+        return influence
 
-    def solve(self, normal_velocity: Array) -> Array:
+    def solve(self, normal_velocity: Array, strips: Array | None = None) -> Array:
         """Circulations (N,) or (N,k) m2/s that induce the normal velocity (N,) or (N,k) m/s.
 
-        Raises ConvergenceError for a velocity that is not finite.
+        ``strips`` (N,n) 1/m are the normal velocity by each strip of a wake that carries the
+        trailing circulation, for a circulation of 1. Raises ConvergenceError for a velocity
+        that is not finite.
         """
-        return self._solved(normal_velocity, None)
-
-    def solve_with_strips(self, normal_velocity: Array, strips: Array) -> Array:
-        """Circulations (N,) or (N,k) of a flow whose wake strips carry the trailing circulation.
-
-        ``strips`` (N,n) 1/m is the normal velocity by each strip of circulation 1. The
-        n trailing circulations are found first, from the Schur complement of the bound rings,
-        whose factorisation thus serves any wake.
-        """
-        return self._solved(normal_velocity, strips)
-
-    def _solved(self, normal_velocity: Array, strips: Array | None) -> Array:
         if not np.isfinite(normal_velocity).all():
             raise ConvergenceError("vortex lattice", self._place_of_fault(normal_velocity))
-        self.iterations = 0
-        inverse = self._factored_inverse(strips)
-        if self._matrix is None:
-            return inverse(normal_velocity)
-        columns = normal_velocity.reshape(len(normal_velocity), -1).T
-        guess = self._guess if normal_velocity.ndim == 1 else None
-        solved = []
-        for column in columns:
-            solution = self._solve_deformed(column, inverse, strips, guess)
-            if solution is None:
-                self._factorise(self._matrix)
-                return self._factored_inverse(strips)(normal_velocity)
-            solved.append(solution)
-        return np.stack(solved, axis=1).reshape(normal_velocity.shape)
+        found = None if self._factor is None else self._refined(normal_velocity, strips)
+        if found is None:
+            found = lu_solve(self._factorise(strips).lu, normal_velocity, check_finite=False)
+            self.refinements = 0
+        return found
 
-    def _factored_inverse(self, strips: Array | None) -> Callable[[Array], Array]:
-        """The inverse of the factorised rings, or of those rings with the strips behind them."""
-        lu = self._lu
-        if strips is None:
-            return lambda right: lu_solve(lu, right, check_finite=False)
-        kept = self._kept_inverse
-        if kept is not None and kept[0] is self._factor and kept[1] is strips:
-            return kept[2]
-        trailing = self.trailing_rings
-        response = lu_solve(lu, strips, check_finite=False)
-        schur = lu_factor(np.eye(len(trailing)) + response[trailing])
-
-        def inverse(right: Array) -> Array:
-            alone = lu_solve(lu, right, check_finite=False)
-            return alone - response @ lu_solve(schur, alone[trailing])
-
-        self._kept_inverse = self._factor, strips, inverse
-        return inverse
+    def _refined(self, right: Array, strips: Array | None) -> Array | None:
+        """Circulations by iterative refinement; None where the factorisation does not serve."""
+        assert self._factor is not None
+        assert self._rings is not None, "place the surfaces first"
+        trailing, limit = self.trailing_rings, TOLERANCE * float(np.linalg.norm(right))
+        found = self._guess if right.ndim == 1 and self._guess is not None else np.zeros_like(right)
+        before = np.inf
+        for self.refinements in range(REFINEMENTS + 1):
+            lacking = right - self._rings.influence @ found
+            if strips is not None:
+                lacking -= strips @ found[trailing]
+            size = float(np.linalg.norm(lacking))
+            if size <= limit:
+                return found
+            if not size <= GAIN * before:
+                return None
+            before = size
+            found = found + lu_solve(self._factor.lu, lacking, check_finite=False)
+        return None
 
     @property
     def trailing_rings(self) -> Array:
@@ -158,8 +145,12 @@ class BoundSystem:
         self._factor = self._accepted
 
     def state(self) -> dict[str, np.ndarray]:
-        """The corners that the accepted factorisation is of."""
-        return {} if self._accepted is None else {"corners": self._accepted.corners.copy()}
+        """The corners, and the strips if any, that the accepted factorisation is of."""
+        factor = self._accepted
+        if factor is None:
+            return {}
+        strips = {} if factor.strips is None else {"strips": factor.strips.copy()}
+        return {"corners": factor.rings.corners.copy(), **strips}
 
     def restore(self, state: Mapping[str, np.ndarray], surfaces: Sequence[Surface]) -> None:
         """Take a state back, to the same bits; ``surfaces`` give the numbers of panels."""
@@ -173,12 +164,8 @@ class BoundSystem:
                     for c, s in zip(parts, surfaces, strict=True)
                 ]
             )
+            self._factorise(state.get("strips"))
         self._accepted = self._factor
-
-    @property
-    def _lu(self) -> tuple[Array, Array]:
-        assert self._factor is not None, "place the surfaces first"
-        return self._factor.lu
 
     def _images(self, vertices: Array) -> list[Array]:
         return [vertices] if self.symmetry is None else self.symmetry.images(vertices)
@@ -186,41 +173,15 @@ class BoundSystem:
     def _corners(self) -> Array:
         return np.concatenate([s.lattice.corners.reshape(-1, 3) for s in self._surfaces])
 
-    def _factorise(self, matrix: Array) -> None:
-        self._factor = Factor(self._corners(), lu_factor(matrix, check_finite=False))
-        self._matrix = None
+    def _factorise(self, strips: Array | None) -> Factor:
+        assert self._rings is not None, "place the surfaces first"
+        matrix = self._rings.influence.copy()
+        if strips is not None:
+            matrix[:, self.trailing_rings] += strips
+        lu = lu_factor(matrix, overwrite_a=True, check_finite=False)
+        self._factor = Factor(self._rings, strips, lu)
         self.factorisations += 1
-
-    def _solve_deformed(
-        self,
-        right: Array,
-        inverse: Callable[[Array], Array],
-        strips: Array | None,
-        guess: Array | None,
-    ) -> Array | None:
-        """GMRES for one right side (N,) from a guess, preconditioned; None if it takes long."""
-        matrix, count = self._matrix, 0
-        assert matrix is not None
-        trailing = self.trailing_rings
-
-        def product(x: Array) -> Array:
-            return matrix @ x if strips is None else matrix @ x + strips @ x[trailing]
-
-        def counted(_residual: float) -> None:
-            nonlocal count
-            count += 1
-
-        first = inverse(right)
-        if guess is not None:
-            first = guess + inverse(right - product(guess))
-        solution, unfinished = gmres(
-            LinearOperator(matrix.shape, product, dtype=float), right, first,
-            rtol=GMRES_TOLERANCE, restart=GMRES_ITERATIONS, maxiter=1,
-            M=LinearOperator(matrix.shape, inverse, dtype=float),
-            callback=counted, callback_type="pr_norm",
-        )  # fmt: skip
-        self.iterations = max(self.iterations, count)
-        return None if unfinished else solution
+        return self._factor
 
     def _moved_rigidly(self, reference: Array) -> bool:
         """Whether the surfaces are the reference moved as a whole (Kabsch 1976)."""

@@ -20,6 +20,7 @@ from galerna.aero.vortex.far_wake import FarWake
 from galerna.aero.vortex.flow import (
     EdgeInfluence,
     Flow,
+    NearField,
     bound_flow,
     control_points,
     edge_flow,
@@ -74,6 +75,7 @@ class _Trial:
     dt: float
     shed: list[Shedding]
     wake: Wake
+    near: NearField
     held: _Influences | None = None
     solution: Solution | None = None
 
@@ -120,6 +122,11 @@ class UnsteadyLattice:
         return self.clock.ages
 
     @property
+    def _smooth(self) -> bool:
+        """Whether velocities may be interpolated: where sums may err."""
+        return self.options.tree_error is not None
+
+    @property
     def largest_step(self) -> float:
         """The longest step, s: the age of the first panel."""
         return self.clock.step
@@ -149,7 +156,8 @@ class UnsteadyLattice:
         total = [i + dt * new.known for i, new in zip(memory.shed, shed, strict=True)]
         wake = self.clock.advanced(memory, memory.elapsed + dt, total)
         self.system.guess(np.concatenate([g.ravel() for g in memory.circulation]))
-        self._trial = _Trial(memory, dt, shed, wake)
+        near = NearField(self.options.mirror, self._smooth)
+        self._trial = _Trial(memory, dt, shed, wake, near)
 
     def solve(self, time: float, surfaces: Sequence[Surface]) -> Solution:
         """The flow about ``surfaces`` where they are at ``time``, the end of the step begun.
@@ -159,11 +167,15 @@ class UnsteadyLattice:
         trial = self._begun()
         trial.wake.attach([s.lattice.vertices[-1] for s in surfaces])
         if trial.held is None:
-            self.system.place(surfaces, often=self.options.hold_influences)
+            self.system.reject()
+            self.system.place(surfaces)
         flow = self._flow(trial, time, surfaces)
+        if trial.solution is None and self.options.hold_influences:
+            self.system.guess(np.concatenate([g.ravel() for g in flow.circulation]))
         rate = None if self.options.quasi_steady else trial.memory.rates(flow.circulation, trial.dt)
         options = self.options
-        air = segment_air(surfaces, flow, options.mirror)
+        near = trial.near.velocity(surfaces, flow)
+        air = segment_air(surfaces, flow, near)
         loads = lattice_loads(surfaces, flow.circulation, air, options.air_density, rate)
         trial.solution = Solution(flow, rate, air, loads)
         return trial.solution
@@ -305,7 +317,7 @@ class UnsteadyLattice:
         influences = trial.held
         if influences is None:
             influences = _Influences(
-                self._far_wake(trial.wake).velocity(surfaces, points),
+                self._far_wake(trial.wake).velocity(surfaces),
                 edge_influence(surfaces, edges, options.mirror),
             )
         if options.hold_influences:
@@ -315,9 +327,8 @@ class UnsteadyLattice:
         )
 
     def _far_wake(self, wake: Wake) -> FarWake:
-        smooth = self.options.tree_error is not None
         summed = self.clock.thinning.wake(wake)
-        return FarWake(summed, self.options.core, self.clock.field, smooth)
+        return FarWake(summed, self.options.core, self.clock.field, self._smooth)
 
     def _shedding(self, memory: Memory, surfaces: Sequence[Surface], dt: float) -> list[Shedding]:
         assert memory.convection is not None
