@@ -84,7 +84,8 @@ def test_interpolation_between_nodes_keeps_the_spectra():
     spectrum, variance = mann._half_spectrum((512, 4, 4), modes_of(8), np.random.default_rng(1))
     expected = held_variance(512, 512 * SPACING[0]) / LENGTH ** (2 / 3)
     assert variance == pytest.approx(expected, rel=3e-3)
-    assert not spectrum[:, [0, -1]].any()
+    assert spectrum.any()
+    assert not spectrum[:, 0].any()
 
 
 def test_same_seed_same_bits_whatever_the_batch(monkeypatch):

@@ -28,8 +28,10 @@ from galerna.inflow.spectra import (
 )
 from galerna.inflow.synthesis import (
     NORMALISATIONS,
+    HalfSpectrum,
+    Modes,
     Normalisation,
-    Spectrum,
+    no_modes,
     random_generator,
     require_grid,
     require_name,
@@ -88,8 +90,8 @@ def kaimal_box(
     spectra = kaimal_spectra(frequency, mean_speed, hub_height, 1.0)
     decay = kaimal_coherence_decay(frequency, mean_speed, hub_height)
     spectrum = _half_spectrum(shape, spacing[1:], decay, coherent, random_generator(seed))
-    spectrum[:, 1:-1] *= np.sqrt(0.5 * spectra.T * frequency[0])[..., None, None]
-    data = to_space(spectrum, shape[0])
+    spectrum[:, 1:] *= np.sqrt(0.5 * spectra.T * frequency[0])[..., None, None, None]
+    data = to_space(spectrum)
     for c, ratio in enumerate(KAIMAL_DEVIATIONS):
         expected = float(spectra[:, c].sum() * frequency[0])
         variance = unit_variance(normalise, ratio**2, expected, data[c])
@@ -103,10 +105,10 @@ def _half_spectrum(
     decay: Array,
     coherent: str,
     rng: np.random.Generator,
-) -> Spectrum:
-    """Modes (3,nx/2+1,ny,nz) with E|X|^2 = 1, but for the mean and the highest, which are 0."""
-    spectrum = np.zeros((3, shape[0] // 2 + 1, *shape[1:]), dtype=np.complex64)
-    for modes, component in zip(spectrum[:, 1:-1], "uvw", strict=True):
+) -> HalfSpectrum:
+    """Modes with E|X|^2 = 1, but for the mean and the highest, which are 0."""
+    spectrum = no_modes(shape)
+    for modes, component in zip(spectrum[:, 1:], "uvw", strict=True):
         if component in coherent:
             _fill_coherent(modes, decay, spacing, rng)
         else:
@@ -114,26 +116,29 @@ def _half_spectrum(
     return spectrum
 
 
-def _complex_normal(rng: np.random.Generator, shape: tuple[int, ...]) -> Spectrum:
+def _complex_normal(rng: np.random.Generator, shape: tuple[int, ...]) -> Modes:
     """Independent complex numbers with E|n|^2 = 1."""
     parts = rng.standard_normal((*shape, 2), dtype=np.float32)
     parts *= np.float32(math.sqrt(0.5))
     return parts.view(np.complex64)[..., 0]
 
 
-def _fill_independent(modes: Spectrum, rng: np.random.Generator) -> None:
+def _fill_independent(modes: HalfSpectrum, rng: np.random.Generator) -> None:
     for mode in modes:
-        mode[:] = _complex_normal(rng, mode.shape)
+        noise = _complex_normal(rng, mode.shape[1:])
+        mode[0], mode[1] = noise.real, noise.imag
 
 
 def _fill_coherent(
-    modes: Spectrum, decay: Array, spacing: tuple[float, float], rng: np.random.Generator
+    modes: HalfSpectrum, decay: Array, spacing: tuple[float, float], rng: np.random.Generator
 ) -> None:
     for mode, rate in zip(modes, decay, strict=True):
-        power = embedded_power(mode.shape, spacing, rate)
+        _, ny, nz = mode.shape
+        power = embedded_power((ny, nz), spacing, rate)
         noise = _complex_normal(rng, power.shape)
         noise *= np.sqrt(power, dtype=np.float32)
-        mode[:] = fft.fft2(noise, overwrite_x=True)[: mode.shape[0], : mode.shape[1]]
+        wind = fft.fft2(noise, overwrite_x=True)[:ny, :nz]
+        mode[0], mode[1] = wind.real, wind.imag
 
 
 def embedded_power(shape: tuple[int, int], spacing: tuple[float, float], decay: float) -> Array:

@@ -3,7 +3,7 @@
 Mann, J. (1998), Wind field simulation, Prob. Eng. Mech. 13 (4), 269-282. The box
 is a sum of Fourier modes with Gaussian amplitudes of the covariance given by the
 spectral tensor. Modes are drawn plane by plane of k1 and brought to (y, z) at
-once, so the memory is that of the box and of its half spectrum.
+once, and make way for the box in their own memory.
 """
 
 from __future__ import annotations
@@ -25,8 +25,10 @@ from galerna.inflow.mann_tensor import FAST
 from galerna.inflow.spectra import ISOTROPIC_VARIANCE, mann_variances
 from galerna.inflow.synthesis import (
     NORMALISATIONS,
+    HalfSpectrum,
+    Modes,
     Normalisation,
-    Spectrum,
+    no_modes,
     random_generator,
     require_grid,
     require_name,
@@ -86,7 +88,7 @@ def mann_box(
         shape, spacing, length_scale, shear_parameter, high_frequency_compensation, lateral_period
     )
     spectrum, expected = _half_spectrum(shape, modes, random_generator(seed))
-    data = to_space(spectrum, shape[0])
+    data = to_space(spectrum)
     if alpha_epsilon is not None:
         data *= np.float32(math.sqrt(alpha_epsilon) * length_scale ** (1 / 3))
     else:
@@ -133,13 +135,13 @@ def _lateral_modes(
 
 def _half_spectrum(
     shape: tuple[int, int, int], modes: LateralModes, rng: np.random.Generator
-) -> tuple[Spectrum, float]:
-    """Fourier modes along x (3,nx/2+1,ny,nz) at the points (y, z), and the variance of u expected.
+) -> tuple[HalfSpectrum, float]:
+    """Fourier modes along x at the points (y, z), and the variance of u expected of them.
 
     For L = 1 and alpha epsilon^(2/3) = 1. The mean and the highest wavenumber are left out.
     """
     nx, ny, nz = shape
-    spectrum = np.zeros((3, nx // 2 + 1, ny, nz), dtype=np.complex64)
+    spectrum = no_modes(shape)
     width = 2.0 * math.pi / (nx * modes.spacing[0])
     batch = max(1, _MODES_AT_ONCE // math.prod(modes.shape))
     variance = 0.0
@@ -152,7 +154,9 @@ def _half_spectrum(
             block = np.empty((len(planes), 3, *modes.shape), dtype=np.complex64)
             variance += _fill(noise, low[1], high[1], share, amplitude, block)
             wind = fft.ifft2(block, norm="forward", overwrite_x=True)[:, :, :ny, :nz]
-            spectrum[:, planes[0] : planes[-1] + 1] = np.moveaxis(wind, 0, 1)
+            place = spectrum[:, planes[0] : planes[-1] + 1]
+            place[:, :, 0] = np.moveaxis(wind.real, 0, 1)
+            place[:, :, 1] = np.moveaxis(wind.imag, 0, 1)
     return spectrum, variance
 
 
@@ -184,7 +188,7 @@ def _intervals(
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
 def _fill(
-    noise: Factor, low: Factor, high: Factor, share: Array, amplitude: Array, out: Spectrum
+    noise: Factor, low: Factor, high: Factor, share: Array, amplitude: Array, out: Modes
 ) -> float:
     """Correlate noise (n,3,2,ny,nz) into modes (n,3,ny,nz); returns what var(u) expects of them."""
     variance = 0.0

@@ -125,4 +125,5 @@ def require_room(box: Box, rotor: RotorExtent, duration: float, held_below: bool
 
 def mean_deviation(box: Box) -> float:
     """Standard deviation m/s of u over time, the root of its mean variance over the grid."""
-    return float(np.sqrt(np.var(box.data[0], axis=0, dtype=np.float64).mean()))
+    rows = (np.var(box.data[0, :, j], axis=0, dtype=np.float64) for j in range(box.shape[1]))
+    return float(np.sqrt(np.mean(list(rows))))

@@ -12,7 +12,11 @@ from scipy import fft
 from galerna.errors import InputError, did_you_mean
 from galerna.inflow.box import Block
 
-Spectrum = NDArray[np.complex64]
+Modes = NDArray[np.complex64]
+#: Fourier modes over x in the memory of the box they make, (3,nx/2,2,ny,nz): the real and the
+#: imaginary part of mode n at [:, n]. The mean, mode 0, is zero, and so is the highest, nx/2,
+#: which has no place here.
+HalfSpectrum = NDArray[np.float32]
 
 #: Of what a standard deviation is meant: ``"theory"``, of the whole spectrum, so that a box
 #: lacks what its length and spacing leave out; ``"box"``, of what a box of this length and
@@ -20,7 +24,8 @@ Spectrum = NDArray[np.complex64]
 Normalisation = Literal["theory", "box", "sample"]
 NORMALISATIONS = ("theory", "box", "sample")
 
-_MOST_POINTS = 1 << 30  #: a box of 12 GB, and as much again while it is made
+_MOST_POINTS = 1 << 30  #: a box of 12 GB
+_POINTS_AT_ONCE = 32  #: of (y, z), brought from modes to space together
 
 
 def random_generator(seed: int) -> np.random.Generator:
@@ -75,16 +80,34 @@ def require_grid(
 def unit_variance(normalise: str, theory: float, expected: float, sample: Block) -> float:
     """The variance that is scaled to the target, m2/s2: see ``Normalisation``."""
     if normalise == "sample":
-        return float(np.mean(np.square(sample), dtype=np.float64))
+        planes = (np.square(plane).mean(dtype=np.float64) for plane in sample)
+        return math.fsum(planes) / len(sample)
     return theory if normalise == "theory" else expected
 
 
-def to_space(spectrum: Spectrum, nx: int) -> Block:
-    """Velocities (3,nx,ny,nz) of a half spectrum (3,nx/2+1,ny,nz) over x.
+def no_modes(shape: tuple[int, int, int]) -> HalfSpectrum:
+    """A half spectrum without energy, of a box with (nx, ny, nz) points."""
+    nx, ny, nz = shape
+    return np.zeros((3, nx // 2, 2, ny, nz), dtype=np.float32)
+
+
+def to_space(spectrum: HalfSpectrum) -> Block:
+    """Velocities (3,nx,ny,nz) of a half spectrum, which they replace in its memory.
 
     With E|X_n|^2 of the mode n, the variance is the sum of 2 E|X_n|^2 over n > 0.
     """
-    data = np.empty((3, nx, *spectrum.shape[2:]), dtype=np.float32)
-    for c in range(3):
-        data[c] = fft.irfft(spectrum[c], n=nx, axis=0, norm="forward")
-    return data
+    _, half, _, ny, nz = spectrum.shape
+    columns = spectrum.reshape(3, half, 2, ny * nz)
+    for component in columns:
+        for first in range(0, ny * nz, _POINTS_AT_ONCE):
+            _column_to_space(component[..., first : first + _POINTS_AT_ONCE])
+    return spectrum.reshape(3, 2 * half, ny, nz)
+
+
+def _column_to_space(column: HalfSpectrum) -> None:
+    """The same for some points (nx/2,2,n) of one component, in place."""
+    half, _, count = column.shape
+    modes = np.zeros((half + 1, count), dtype=np.complex64)
+    modes.real[:-1], modes.imag[:-1] = column[:, 0], column[:, 1]
+    velocity = fft.irfft(modes, axis=0, norm="forward")
+    column[:] = velocity.reshape(column.shape)
