@@ -54,6 +54,22 @@ class ChordPoints:
         middles = 0.5 * (columns[:, 1:] + columns[:, :-1])
         return np.concatenate([columns, middles], axis=1).reshape(-1, 3)
 
+    def directly(self, field: InducedField) -> Array:
+        """Velocity (P,3) m/s of a field at the points, which are asked column by column.
+
+        So points that are summed together are neighbours, and more of the field is far from them.
+        """
+        velocity = np.empty_like(self.points)
+        velocity[self._by_column] = field.velocity(self.points[self._by_column])
+        return velocity
+
+    @cached_property
+    def _by_column(self) -> NDArray[np.intp]:
+        m, n = self.surface.shape
+        middles, columns = np.tile(np.arange(n) + 0.5, m), np.tile(np.arange(n + 1), m)
+        parts = [middles, middles, columns] if self.collocated else [middles, columns]
+        return np.argsort(np.concatenate(parts), kind="stable")
+
     def near_rows(self, vertices: Array) -> NDArray[np.bool_]:
         """Whether panels (K,) between vertices (K+1,n+1,3) m come near."""
         corners = self.surface.lattice.corners[:, ::2]
@@ -113,7 +129,7 @@ class AlongChords:
             others = self._make_field(_chosen(sheets, ~own & ~lonely), self._apart)
             smooth = found[number] + others.velocity(target.stations)
             direct = self._make_field(_chosen(sheets, own), near)
-            found[number] = target.interpolated(smooth) + direct.velocity(target.points)
+            found[number] = target.interpolated(smooth) + target.directly(direct)
         return found
 
     def _at_all(

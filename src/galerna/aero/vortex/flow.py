@@ -160,7 +160,8 @@ class NearField:
         targets = [ChordPoints(s, collocated=False) for s in surfaces]
         if self._sums is None:
             self._sums = AlongChords(targets, sheets, self._field, self._smooth)
-        return np.concatenate(self._sums.velocity(targets, sheets, near="double"))
+        near = "mixed" if self._smooth else "double"
+        return np.concatenate(self._sums.velocity(targets, sheets, near))
 
     def _field(self, sheets: Sequence[Sheet], precision: str) -> InducedField:
         return InducedField(sheets, precision=precision, mirror=self._mirror)

@@ -41,7 +41,7 @@ from galerna.contract import Array
 LANES = 64  # points of a block: distances from two rows of vertices then stay in the cache
 NUMBERS = 15  # of a vertex: itself, the segment from its left neighbour, and that from upstream
 _four = np.float32(4.0)
-WIDEST = 17  # vertices across a tile, for the same reason
+WIDEST = 9  # vertices across a tile: small ones are soon far enough for single precision
 
 
 class Block(NamedTuple):
