@@ -37,6 +37,7 @@ MODULES = (
     "afloat_decay",
     "afloat_sea",
     "afloat_statements",
+    "afloat_reasons",
     "afloat_volturnus",
 )
 

@@ -24,11 +24,12 @@ from .machine import rosco_input
 TURBINE = "nrel5mw_oc3"
 #: Table 5.1 of the dissertation: gains for the open sea of the redesign over the reference's
 REDESIGN = (0.004849 / 0.006276, 0.0006927 / 0.0008965)
+RAISED = (1.65, 1.65)  #: the same the other way, by as much as ``afloat_reasons`` finds
+FACTORS = {"redesign": REDESIGN, "raised": RAISED}  #: on proportional and integral gain
 NATURAL_FREQUENCY, DAMPING_RATIO = 0.20, 0.7  #: rad/s; NREL/TP-500-47535, section 6
 
 #: What a case's ``control`` is, by name
 Control = dict[str, Any]
-CONTROLLERS = ("open loop", "reference", "redesign", "ROSCO detuned", "ROSCO on land")
 
 
 class OpenLoop:
@@ -61,8 +62,8 @@ def _block(name: str, folder: Path) -> Control:
     if name == "ROSCO detuned":
         return {"model": "discon", "input_file": str(detuned_rosco(folder))}
     baseline: Control = {"model": "baseline", "above_rated": "constant_torque"}
-    if name == "redesign":
-        baseline["gains"] = str(redesign(folder))
+    if name in FACTORS:
+        baseline["gains"] = str(scaled_gains(folder, *FACTORS[name]))
     return baseline
 
 
@@ -73,24 +74,24 @@ def schedule() -> Array:
     return rows
 
 
-def redesign(folder: Path) -> Path:
-    """A file of gains: the schedule of the reference times what Table 5.1 changes at no pitch."""
+def scaled_gains(folder: Path, on_proportional: float, on_integral: float) -> Path:
+    """A file of gains: the schedule of the reference times a factor on each."""
     pitch, proportional, integral = schedule().T
     turbine = load(TURBINE)
     content = {
         "galerna_gains": 1,
         "turbine": turbine.name,
         "above_rated": "constant_torque",
-        "natural_frequency_rad_s": NATURAL_FREQUENCY,  # by a lower sensitivity to pitch
+        "natural_frequency_rad_s": NATURAL_FREQUENCY,  # of the reference
         "damping_ratio": DAMPING_RATIO,
         "optimal_mode_gain_N_m_s2": turbine.control.optimal_mode_gain,
         "pitch_schedule": {
             "pitch_deg": (pitch / DEG).tolist(),
-            "proportional_s": (REDESIGN[0] * proportional).tolist(),
-            "integral": (REDESIGN[1] * integral).tolist(),
+            "proportional_s": (on_proportional * proportional).tolist(),
+            "integral": (on_integral * integral).tolist(),
         },
     }
-    path = folder / "redesign.yaml"
+    path = folder / "gains.yaml"
     path.write_text(json.dumps(content))
     return path
 
