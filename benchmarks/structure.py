@@ -17,8 +17,9 @@ from galerna.contract import Array
 from galerna.structure.assembly import GROUND, Structure
 from galerna.structure.beam import discretise, straight, uniform
 from galerna.structure.initial import with_initial_accelerations
-from galerna.structure.integrators import Integrator, Scheme
+from galerna.structure.integrators import Integrator
 from galerna.structure.joints import hinge
+from galerna.structure.scheme import Scheme
 from galerna.structure.system import Forces, State, System, spin_twists
 from galerna.structure.turbine import TurbineOptions, turbine_system
 from galerna.units import RPM

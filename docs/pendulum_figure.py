@@ -18,7 +18,8 @@ from scipy.signal import welch
 
 from galerna.contract import Array
 from galerna.structure.initial import with_initial_accelerations
-from galerna.structure.integrators import Integrator, Scheme
+from galerna.structure.integrators import Integrator
+from galerna.structure.scheme import Scheme
 from galerna.structure.system import State
 from validation.multibody import flexible_pendulum
 

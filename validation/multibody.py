@@ -17,8 +17,9 @@ from galerna.structure.beam import discretise, straight, uniform
 from galerna.structure.bodies import moved, point_mass, rigid_body
 from galerna.structure.constraints import RollingWithoutSlip, TouchesPlane, lowest_point
 from galerna.structure.initial import with_initial_accelerations
-from galerna.structure.integrators import Integrator, Scheme, Tolerance
+from galerna.structure.integrators import Integrator
 from galerna.structure.joints import cylindrical, hinge, spherical
+from galerna.structure.scheme import Scheme, Tolerance
 from galerna.structure.system import State, System, spin_twists
 
 from . import mechanics

@@ -16,8 +16,9 @@ from galerna.structure.checkpoint import load, save
 from galerna.structure.constraints import PrescribedVelocity, TouchesPlane
 from galerna.structure.frames import rotation_about
 from galerna.structure.initial import under_way, velocity_violation, with_initial_accelerations
-from galerna.structure.integrators import Integrator, Scheme, Tolerance
+from galerna.structure.integrators import Integrator
 from galerna.structure.joints import hinge, integral, on_path, prismatic, spherical, turning
+from galerna.structure.scheme import Scheme, Tolerance
 from galerna.structure.system import Forces, spin_twists
 
 from .models import coupled_sections, double_pendulum, flexible_sections

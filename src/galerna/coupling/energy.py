@@ -23,7 +23,7 @@ import numpy as np
 
 from galerna.contract import Array, Channel
 from galerna.structure.frames import log_se3
-from galerna.structure.integrators import Scheme
+from galerna.structure.scheme import Scheme
 from galerna.structure.system import Forces, State, System
 
 GIVEN = ("electrical", "losses", "brake")

@@ -20,10 +20,11 @@ from galerna.errors import ConvergenceError, InputError, did_you_mean
 from galerna.kinematics import CHANNELS
 from galerna.structure.attachment import Attachment
 from galerna.structure.frames import rotation_about
-from galerna.structure.integrators import Integrator, Scheme, Tolerance, Trial
+from galerna.structure.integrators import Integrator, Trial
 from galerna.structure.joints import Angle
 from galerna.structure.pairs import Integers
 from galerna.structure.placing import placed
+from galerna.structure.scheme import Scheme, Tolerance
 from galerna.structure.system import ARRAYS, Forces, State, System
 from galerna.structure.turbine import TurbineOptions, TurbineSystem, turbine_system
 from galerna.turbine.geometry import part_frames

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,10 +12,8 @@ from galerna.errors import InputError
 
 from .forces import Forces, in_body_axes
 from .frames import ad, exp_se3
+from .scheme import Scheme
 from .system import Balance, State, System, reach
-
-if TYPE_CHECKING:
-    from .integrators import Scheme
 
 
 def with_initial_accelerations(system: System, state: State, forces: Forces | None = None) -> State:
