@@ -6,13 +6,16 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
+from scipy.linalg import eig
 
 from galerna.case import load as load_case
 from galerna.contract import Loads, Motion, Stations
 from galerna.coupling.afloat import build_water
 from galerna.coupling.flexible import FlexibleMachine
 from galerna.coupling.floating import Burden, Pose, WaterAtRest
+from galerna.coupling.floating_report import modes_of
 from galerna.errors import InputError
+from galerna.hydro.heading import lean_of
 from galerna.structure import TurbineOptions, with_initial_accelerations
 from galerna.structure.attachment import Attachment
 from galerna.structure.foundation import Spar
@@ -268,3 +271,26 @@ def test_a_flexible_spar_floats_where_the_rigid_one_does() -> None:
     )
     for found, expected in zip(bent.total(pose), rigid.total(pose), strict=True):
         assert found == pytest.approx(expected, rel=1e-12)
+
+
+def test_a_leaning_spar_yaws_as_an_upright_one() -> None:
+    """About its own axis it moves no water; with upright coefficients it would be slower."""
+    total, mass, center = rigid_mass(floating())
+    gravity = np.array([0.0, 0.0, -9.80665])
+    yaw = {}
+    for axes in ("mean_lean", "upright"):
+        case = AFLOAT | {"sea": "still", "platform": {"added_mass_axes": axes}}
+        afloat = build_water(load_case(case), OC3)
+        water, burden = afloat.floating.water, Burden(mass, center, np.eye(6)[4] * 7.5e7)
+        pose = water.equilibrium(burden, afloat.floating.pose, gravity)
+        water.settle(pose)
+        turned = np.kron(np.eye(2), pose.rotation)
+        inertia = turned @ total @ turned.T + water.loads(pose)["hydrodynamics"].mass[0]
+        squares, shapes = eig(water.balance(burden, pose, gravity)[1], inertia)
+        moved = np.abs(shapes[5]) / np.linalg.norm(shapes, axis=0)
+        yaw[axes] = np.sqrt(squares[int(moved.argmax())].real) / (2.0 * np.pi)
+    assert lean_of(pose.rotation)[1] == pytest.approx(np.deg2rad(3.3), rel=0.01)
+    assert yaw["mean_lean"] == pytest.approx(0.1205, rel=0.005)
+    assert yaw["upright"] < 0.9 * yaw["mean_lean"]
+    modes = modes_of(OC3, RIGID, water, burden, pose, afloat.database)
+    assert modes[-1].frequency == pytest.approx(yaw["upright"], rel=0.01)

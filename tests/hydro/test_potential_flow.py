@@ -11,7 +11,7 @@ from galerna.contract import LoadModel, Motion
 from galerna.errors import InputError
 from galerna.hydro.drift import SlowDrift
 from galerna.hydro.excitation import WaveExcitation
-from galerna.hydro.heading import Bins, MeanHeading
+from galerna.hydro.heading import Bins, MeanHeading, MeanLean, lean_of, mean_axes
 from galerna.hydro.platform_options import PlatformOptions
 from galerna.hydro.potential_flow import PotentialFlow
 from galerna.hydro.radiation import RadiationStateSpace, fit_radiation
@@ -110,7 +110,7 @@ def test_is_a_load_model_whose_parts_make_the_whole(database, fit):
 
 
 def test_every_part_is_what_it_says(database, fit):
-    model = model_of(database, fit, radiation="none")
+    model = model_of(database, fit, radiation="none", added_mass_axes="upright")
     motion = Motion.at_rest(1)
     motion.position[0] = [3.0, 1.0, -2.0]
     motion.rotation[0] = exp_so3(np.array([0.0, 0.05, 0.0]))
@@ -265,9 +265,13 @@ def decayed(model, mass, height, dt, duration):
     return np.array([motion.position[0, 2], motion.velocity[0, 2]])
 
 
-def test_still_water_never_gives_energy_away(database, fit):
+@pytest.mark.parametrize("lean", [0.0, 0.1])
+def test_still_water_never_gives_energy_away(database, fit, lean):
     """Random motion around: what radiation and damping take is never given back in all."""
-    model = model_of(database, fit)
+    model = model_of(database, fit, lean_cut_off_hz=0.0)
+    leaning = Motion.at_rest(1)
+    leaning.rotation[0] = exp_so3(np.array([0.0, lean, 0.0]))
+    model.settle(leaning)
     times = np.arange(0.0, 120.0, 0.02)
     rng = np.random.default_rng(8)
     w, phase = rng.uniform(0.1, 2.0, (2, 12, 6))
@@ -452,6 +456,97 @@ def test_fixed_heading_stays(database, fit):
     model.loads(0.1, motion)
     model.end_step(0.1, motion)
     assert model.state()["heading"] == 0.25
+
+
+@pytest.mark.parametrize("yaw", [0.0, 2.3, -3.0])
+def test_lean_is_the_shortest_turn_from_upright(yaw):
+    lean = np.array([0.06, -0.11, 0.0])
+    leaning = mean_axes(yaw, lean)
+    np.testing.assert_allclose(lean_of(leaning), lean, rtol=1e-12)
+    np.testing.assert_allclose(leaning.T @ leaning, np.eye(3), atol=1e-15)
+    np.testing.assert_array_equal(lean_of(rotation_about(2, yaw)), np.zeros(3))
+
+
+def test_mean_lean_begins_at_rest_and_follows_as_a_lag():
+    mean, leaning = MeanLean(0.01), exp_so3(np.array([0.0, 0.2, 0.0]))
+    np.testing.assert_allclose(mean.over_step(leaning), [0.0, 0.2, 0.0])
+    mean.settle(exp_so3(np.array([0.0, 0.05, 0.0])))
+    for _ in range(100):
+        mean.commit(0.2, mean.over_step(leaning), leaning)
+    left = np.exp(-2.0 * np.pi * 0.01 * 20.0)
+    np.testing.assert_allclose(mean.over_step(leaning), [0.0, 0.2 - 0.15 * left, 0.0], rtol=1e-12)
+    with pytest.raises(InputError, match="lean_cut_off_hz"):
+        MeanLean(-0.1)
+
+
+def test_a_leaning_body_of_revolution_spins_without_its_added_mass(database, fit):
+    """About its own axis it moves no water; upright axes give a spar a share of A44."""
+    leaning = exp_so3(np.array([0.03, 0.05, 0.0]))
+    spin = Motion.at_rest(1)
+    spin.rotation[0] = leaning
+    spin.angular_acceleration[0] = leaning[:, 2]
+    found = {}
+    for axes in ("mean_lean", "upright"):
+        model = model_of(database, fit, radiation="none", added_mass_axes=axes)
+        model.settle(spin)
+        model.begin_step(0.0, 0.1, spin)
+        loads = model.loads(0.1, spin)
+        model.end_step(0.1, spin)
+        record = model.record()
+        moment = np.array([record[f"added_mass_moment_{axis}"] for axis in "xyz"])
+        found[axes] = -moment @ leaning[:, 2]
+        np.testing.assert_allclose(loads.mass[0], model.static_loads(spin).mass[0], rtol=1e-12)
+    tilt = 1.0 - leaning[2, 2] ** 2
+    assert found["upright"] == pytest.approx(3.8e10 * tilt, rel=1e-12)
+    assert abs(found["mean_lean"]) < 1e-12 * 3.8e10
+
+
+def test_upright_on_average_is_upright_to_the_bit(database, fit):
+    rng = np.random.default_rng(4)
+    motions = [moving(rng, yaw=0.4) for _ in range(5)]
+    found = []
+    for options in ({"lean_cut_off_hz": 0.0}, {"added_mass_axes": "upright"}):
+        model = model_of(database, fit, irregular(), drift="slow", **options)
+        model.settle(Motion.at_rest(1))
+        for k, motion in enumerate(motions[:-1]):
+            model.begin_step(0.1 * k, 0.1, motion)
+            wrench = total(model.loads(0.1 * (k + 1), motions[k + 1]))
+            model.end_step(0.1 * (k + 1), motions[k + 1])
+            found.append(wrench)
+    np.testing.assert_array_equal(found[:4], found[4:])
+
+
+def work_of_added_mass(model, swings=5, w=0.2, steps=200):
+    """Work J on the added mass in pitch and heave at w, and in surge at 2 w, over whole swings."""
+    model.settle(Motion.at_rest(1))
+    motion, powers, dt = Motion.at_rest(1), [], 2.0 * np.pi / w / steps
+    names = [f"added_mass_{kind}_{axis}" for kind in ("force", "moment") for axis in "xyz"]
+    for k in range(steps * (1 + swings)):
+        model.begin_step(k * dt, dt, motion)
+        at = w * dt * (k + 1)
+        surge, swing = 2.0 * at + 0.25 * np.pi, 0.08 * w
+        motion.rotation[0] = exp_so3(np.array([0.0, 0.08 * np.sin(at), 0.0]))
+        motion.velocity[0] = [np.cos(surge), 0.0, 0.2 * np.cos(at)]
+        motion.angular_velocity[0, 1] = swing * np.cos(at)
+        motion.acceleration[0] = [-2.0 * w * np.sin(surge), 0.0, -0.2 * w * np.sin(at)]
+        motion.angular_acceleration[0, 1] = -swing * w * np.sin(at)
+        model.loads((k + 1) * dt, motion)
+        model.end_step((k + 1) * dt, motion)
+        record = model.record()
+        load = np.array([record[name] for name in names])
+        powers.append(-load @ np.concatenate([motion.velocity[0], motion.angular_velocity[0]]))
+    return dt * np.sum(powers[steps:])
+
+
+def test_a_slow_mean_hardly_makes_power_of_the_added_mass(database, fit):
+    """Axes that turn with the motion itself would: products of velocities are not in them."""
+    slow, fast = (
+        work_of_added_mass(model_of(database, fit, radiation="none", lean_cut_off_hz=cut_off))
+        for cut_off in (0.001, 10.0)
+    )
+    held = work_of_added_mass(model_of(database, fit, radiation="none", lean_cut_off_hz=0.0))
+    assert abs(slow) < 0.04 * abs(fast)
+    assert abs(held) < 1e-3 * abs(fast)
 
 
 def test_bins_go_round():

@@ -73,6 +73,7 @@ class Floating:
             machine.carry(self.pose, found)
             if distance < SETTLED:
                 self.settled.take(found)
+                self.water.settle(found)
                 return
         what = f"platform and rotor find no balance: the last pass moved it by {distance:.3g}"
         raise ConvergenceError("platform", what, "start it with another operation")

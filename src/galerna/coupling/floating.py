@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -65,6 +65,12 @@ class Burden:
     wrench: Array
 
 
+def at_rest(model: LoadModel, motion: Motion) -> Loads:
+    """The loads of a model on what rests there, mean ones alone."""
+    static: Callable[[Motion], Loads] | None = getattr(model, "static_loads", None)
+    return model.loads(0.0, motion) if static is None else static(motion)
+
+
 class WaterAtRest:
     """The loads of water and moorings on a platform at rest, by the names of their models.
 
@@ -85,11 +91,22 @@ class WaterAtRest:
     def loads(self, pose: Pose) -> dict[str, Loads]:
         """The loads of each model at a pose, mean ones alone."""
         motion = pose.motion
-        found = {}
-        for name, model in self.models.items():
-            at_rest = getattr(model, "static_loads", None)
-            found[name] = model.loads(0.0, motion) if at_rest is None else at_rest(motion)
-        return found
+        return {name: at_rest(model, motion) for name, model in self.models.items()}
+
+    def settle(self, pose: Pose) -> None:
+        """Tell the models that ask for it where the platform rests."""
+        for model in self.models.values():
+            told = getattr(model, "settle", None)
+            if told is not None:
+                told(pose.motion)
+
+    def axes(self, pose: Pose) -> Array:
+        """Axes (3,3) in which the water's added mass is taken about a pose."""
+        for model in self.models.values():
+            found = getattr(model, "axes_at", None)
+            if found is not None:
+                return np.asarray(found(pose.motion))
+        return np.eye(3)
 
     def total(self, pose: Pose) -> tuple[Array, Array]:
         """Their sum (6,) about the reference point in global axes, and its stiffness (6,6)."""

@@ -34,25 +34,30 @@ class FloatingMode:
 
 
 def floating_modes(
-    machine: FlexibleMachine, state: State, loads: Sequence[Loads], database: HydroDatabase
+    machine: FlexibleMachine,
+    state: State,
+    loads: Sequence[Loads],
+    database: HydroDatabase,
+    axes: Array | None = None,
 ) -> list[FloatingMode]:
     """The six modes of the platform about an equilibrium at rest, by rising frequency.
 
     ``loads`` are those of the load models there, whose mass block of the water is the database's
-    added mass at infinite frequency. Coefficients at rest: no viscous drag. A mode has its name
-    from the largest motion of the machine's mass centre, rotations counted at 50 m.
+    added mass at infinite frequency in ``axes`` (3,3), the platform's unless given. Coefficients
+    at rest: no viscous drag. A mode has its name from the largest motion of the machine's mass
+    centre, rotations counted at 50 m.
     """
-    base = machine.forces(loads)
-    node = int(machine.parts.parts["platform"][0])
+    base, node = machine.forces(loads), int(machine.parts.parts["platform"][0])
+    turned = _six(state.rotation[node] if axes is None else axes)
     center = state.rotation[node].T @ (
         mass_center(machine.system, state) - state.position[node]
     )  # in the platform's axes
     found = []
-    modes = natural_modes(machine.system, state, FIRST, _at(base, node, database, LOW))
+    modes = natural_modes(machine.system, state, FIRST, _at(base, node, database, LOW, turned))
     for k, (name, shown) in _named(modes, node, center):
         frequency, ratio, shape = modes.frequency[k], modes.damping_ratio[k], shown
         for _ in range(PASSES):
-            forces = _at(base, node, database, 2.0 * np.pi * frequency)
+            forces = _at(base, node, database, 2.0 * np.pi * frequency, turned)
             near = natural_modes(machine.system, state, MODES, forces, about_hz=frequency)
             alike = [abs(np.vdot(_motion(one, node, center), shape)) for one in near.shape]
             best = int(np.argmax(alike))
@@ -69,19 +74,21 @@ def response(
     database: HydroDatabase,
     frequency: float,
     excitation: Complex,
+    axes: Array | None = None,
 ) -> Complex:
     """Linear answer (n,6) of all frames, in their own axes, to Re[excitation exp(i w t)].
 
     ``excitation`` (6,) N, N m acts on the platform at ``frequency`` rad/s; see ``floating_modes``.
     """
     node = int(machine.parts.parts["platform"][0])
-    forces = _at(machine.forces(loads), node, database, frequency)
+    turned = _six(state.rotation[node] if axes is None else axes)
+    forces = _at(machine.forces(loads), node, database, frequency, turned)
     linear = linearise(machine.system, state, forces)
     s = 1j * frequency
     matrix = s**2 * linear.mass + s * linear.damping + linear.stiffness
     right = np.zeros(matrix.shape[0], dtype=complex)
-    turned = excitation.reshape(2, 3) @ state.rotation[node]
-    right[6 * (node - 1) : 6 * node] = turned.ravel()
+    own = excitation.reshape(2, 3) @ state.rotation[node]
+    right[6 * (node - 1) : 6 * node] = own.ravel()
     found = splu(matrix.tocsc()).solve(right)[: linear.motions].reshape(-1, 6)
     return np.concatenate([np.zeros((1, 6)), found])
 
@@ -111,12 +118,19 @@ def _motion(shape: Array, node: int, center: Array) -> Complex:
     return np.asarray(whole / max(float(np.linalg.norm(whole)), 1e-300))
 
 
-def _at(base: Forces, node: int, database: HydroDatabase, frequency: float) -> Forces:
+def _six(axes: Array) -> Array:
+    """Matrix (6,6) that takes forces and motions from ``axes`` (3,3) to global ones."""
+    return np.asarray(np.kron(np.eye(2), axes))
+
+
+def _at(
+    base: Forces, node: int, database: HydroDatabase, frequency: float, turned: Array
+) -> Forces:
     """Tangents with the coefficients of a frequency rad/s in place of the infinite one's."""
     added, damping = (found[0] for found in database.coefficients_at([frequency]))
     assert base.mass is not None
     assert base.damping is not None
     mass, loss = base.mass.copy(), base.damping.copy()
-    mass[node] += added - database.added_mass_infinite
-    loss[node] += damping
+    mass[node] += turned @ (added - database.added_mass_infinite) @ turned.T
+    loss[node] += turned @ damping @ turned.T
     return Forces(base.dead, base.follower, base.stiffness, loss, mass, base.stiff)

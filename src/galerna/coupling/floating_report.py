@@ -11,7 +11,7 @@ import numpy as np
 from galerna.contract import Array, Loads
 from galerna.coupling.equilibrium import turn
 from galerna.coupling.flexible import FlexibleMachine
-from galerna.coupling.floating import Burden, Pose, WaterAtRest
+from galerna.coupling.floating import Burden, Pose, WaterAtRest, at_rest
 from galerna.coupling.floating_modes import FloatingMode, floating_modes
 from galerna.hydro.rigid import MODES
 from galerna.structure import TurbineOptions
@@ -106,14 +106,14 @@ def modes_of(
     def loads(state: State) -> Forces:
         machine.start(state)
         forces = machine.forces(
-            [model.loads(0.0, at) for model, at in zip(models, machine.motions, strict=True)]
+            [at_rest(model, at) for model, at in zip(models, machine.motions, strict=True)]
         )
         forces.dead[node] += burden.wrench
         return forces
 
     state = static_equilibrium(machine.system, first, loads, tolerance=1e-6)
     loads(state)
-    return floating_modes(machine, state, machine.loads, database)
+    return floating_modes(machine, state, machine.loads, database, water.axes(pose))
 
 
 def modes_in_words(modes: list[FloatingMode]) -> str:

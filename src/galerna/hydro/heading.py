@@ -1,17 +1,19 @@
-"""Mean yaw of a platform: the axes in which its potential-flow coefficients hold."""
+"""Mean yaw and lean of a platform: the axes in which its potential-flow coefficients hold."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from math import atan2, exp, floor, nan, pi
+from math import atan2, cos, exp, floor, hypot, nan, pi, sin
 from typing import Generic, TypeVar
 
 import numpy as np
+from numba import njit
 
 from galerna.contract import Array
 from galerna.errors import InputError
 
 CUT_OFF = 0.01  #: Hz
+LEAN_CUT_OFF = 0.001  #: Hz: of a pitch of 0.03 Hz 3 % pass
 BIN = pi / 36.0  #: rad: a cosine between two such is off by 0.1 % of its size at most
 
 T = TypeVar("T")
@@ -62,6 +64,72 @@ class MeanHeading:
     def restore(self, state: Mapping[str, np.ndarray]) -> None:
         """Take the mean yaw back."""
         self._angle = float(state["heading"])
+
+
+@njit(cache=True, error_model="numpy")
+def lean_of(rotation: Array) -> Array:
+    """The shortest turn (3,) rad, global axes, that takes z to the body's axis."""
+    x, y, up = rotation[0, 2], rotation[1, 2], rotation[2, 2]
+    level = hypot(x, y)
+    share = atan2(level, up) / level if level > 0.0 else 1.0
+    return np.array([-share * y, share * x, 0.0])
+
+
+@njit(cache=True, error_model="numpy")
+def mean_axes(yaw: float, lean: Array) -> Array:
+    """The axes (3,3), as columns, of a platform that yaws by ``yaw`` rad and then leans (3,)."""
+    c, s, angle = cos(yaw), sin(yaw), hypot(lean[0], lean[1])
+    first = sin(angle) / angle if angle > 0.0 else 1.0
+    second = 2.0 * (sin(0.5 * angle) / angle) ** 2 if angle > 0.0 else 0.5
+    x, y = lean[0], lean[1]
+    tilt = np.array([
+        [1.0 - second * y * y, second * x * y, first * y],
+        [second * x * y, 1.0 - second * x * x, -first * x],
+        [-first * y, first * x, 1.0 - second * angle * angle],
+    ])  # fmt: skip
+    axes = np.empty((3, 3))
+    for k in range(3):
+        axes[k, 0], axes[k, 1] = c * tilt[k, 0] + s * tilt[k, 1], c * tilt[k, 1] - s * tilt[k, 0]
+        axes[k, 2] = tilt[k, 2]
+    return axes
+
+
+class MeanLean:
+    """Lean (3,) rad, global axes, behind a low pass of first order; none where it is ``upright``.
+
+    It begins at the lean of the platform at rest, if that is told, or of the first step, and
+    is held over a step. Raises InputError for a negative cut-off in Hz.
+    """
+
+    def __init__(self, cut_off: float = LEAN_CUT_OFF, upright: bool = False) -> None:
+        if cut_off < 0.0:
+            what = f"cut-off of {cut_off:g} Hz: the mean lean needs one from 0 on"
+            raise InputError("lean_cut_off_hz", what)
+        self.cut_off, self.upright = cut_off, upright
+        self._lean = np.full(3, 0.0 if upright else nan)
+
+    def over_step(self, rotation: Array) -> Array:
+        """Lean (3,) of a step that begins with a rotation (3,3)."""
+        return self._lean if self._lean[2] == 0.0 else lean_of(rotation)
+
+    def settle(self, rotation: Array) -> None:
+        """Begin at the lean of a platform that rests with a rotation (3,3)."""
+        if not self.upright:
+            self._lean = lean_of(rotation)
+
+    def commit(self, dt: float, before: Array, rotation: Array) -> None:
+        """Follow from ``before`` to the rotation (3,3) at the end of a step."""
+        if not self.upright:
+            share = 1.0 - exp(-2.0 * pi * self.cut_off * dt)
+            self._lean = before + share * (lean_of(rotation) - before)
+
+    def state(self) -> dict[str, np.ndarray]:
+        """The mean lean."""
+        return {"lean": self._lean.copy()}
+
+    def restore(self, state: Mapping[str, np.ndarray]) -> None:
+        """Take the mean lean back."""
+        self._lean = np.array(state["lean"], dtype=float)
 
 
 class Bins(Generic[T]):

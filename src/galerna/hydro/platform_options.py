@@ -54,6 +54,14 @@ class PlatformOptions(_Block):
     heading_cut_off_hz: NonNegativeFloat = Field(
         0.01, description="Cut-off of the low-pass filter that takes the mean yaw."
     )
+    added_mass_axes: Literal["mean_lean", "upright"] = Field(
+        "mean_lean",
+        description="Added mass, radiation and additional damping in axes that lean as the "
+        "platform does on average, or upright as in OpenFAST.",
+    )
+    lean_cut_off_hz: NonNegativeFloat = Field(
+        0.001, description="Cut-off of the low-pass filter that takes the mean lean."
+    )
     mooring: Literal["quasi_static", "dynamic", "none"] = Field(
         "quasi_static",
         description="Lines as elastic catenaries, as MoorDyn's lumped masses (extra moordyn), "

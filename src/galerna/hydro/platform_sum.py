@@ -51,6 +51,34 @@ def _turned(c: float, s: float, a: Array, i: int, b: Array, j: int) -> Array:
 
 
 @njit(cache=True, error_model="numpy", fastmath=FAST)
+def seen_from(R: Array, a: Array, b: Array) -> Array:
+    """Row 0 of ``a`` and of ``b`` (1,3) in the axes R (3,3)."""
+    out = np.empty(6)
+    for k in range(3):
+        out[k] = R[0, k] * a[0, 0] + R[1, k] * a[0, 1] + R[2, k] * a[0, 2]
+        out[3 + k] = R[0, k] * b[0, 0] + R[1, k] * b[0, 1] + R[2, k] * b[0, 2]
+    return out
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _out_of(R: Array, own: Array, out: Array) -> None:
+    """``out`` (6,): ``own`` (6,) in the axes R (3,3), seen in global ones."""
+    for i in range(3):
+        out[i] = R[i, 0] * own[0] + R[i, 1] * own[1] + R[i, 2] * own[2]
+        out[3 + i] = R[i, 0] * own[3] + R[i, 1] * own[4] + R[i, 2] * own[5]
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
+def _block_out_of(R: Array, own: Array, out: Array) -> None:
+    """``out`` (6,6): a matrix ``own`` (6,6) in the axes R (3,3), seen in global ones."""
+    half = np.empty((6, 6))
+    for j in range(6):
+        _out_of(R, own[:, j], half[:, j])
+    for i in range(6):
+        _out_of(R, half[i], out[i])
+
+
+@njit(cache=True, error_model="numpy", fastmath=FAST)
 def _turn_block(c: float, s: float, K: Array) -> None:
     """``K <- T K T^T`` (6,6) with the turn T about z, of cosine c and sine s."""
     for first in (0, 3):
@@ -128,38 +156,38 @@ def _float(C: Array, at_rest: Array, offset: Array, rotation: Array, load: Array
 @njit(cache=True, error_model="numpy", fastmath=FAST)
 def add_up(
     position: Array, rotation: Array, velocity: Array, angular_velocity: Array,
-    acceleration: Array, angular_acceleration: Array, c: float, s: float, reference: Array,
-    matrices: Array, given: Array, wrench: Array,
+    acceleration: Array, angular_acceleration: Array, c: float, s: float, axes: Array,
+    reference: Array, matrices: Array, given: Array, wrench: Array,
     parts: Array, force: Array, moment: Array, blocks: Array,
 ) -> None:  # fmt: skip
     """Fill ``parts`` (7,6), the sum on top, ``force`` and ``moment`` (1,3), ``blocks`` (3,1,6,6).
 
-    ``c`` and ``s`` are the heading's cosine and sine. ``matrices`` (4,6,6) are stiffness,
-    additional damping, added mass and radiation's damping, ``given`` (4,6) buoyancy at rest,
-    radiation, excitation and drift, all in the heading's axes but the buoyancy, which turns with
-    the platform; ``wrench`` (6,) is another buoyancy in global axes.
+    ``c`` and ``s`` are the heading's cosine and sine, ``axes`` (3,3) those of the mean lean.
+    ``matrices`` (4,6,6) are stiffness, additional damping, added mass and radiation's damping,
+    ``given`` (4,6) buoyancy at rest, radiation, excitation and drift. The buoyancy turns with
+    the platform, excitation and drift are in the heading's axes, all others in ``axes``.
+    ``wrench`` (6,) is another buoyancy in global axes.
     """
     offset = np.empty((1, 3))
     for k in range(3):
         offset[0, k] = position[0, k] - reference[k]
-    v = _turned(c, -s, velocity, 0, angular_velocity, 0)
-    a = _turned(c, -s, acceleration, 0, angular_acceleration, 0)
-    own = np.zeros((6, 6))
+    v = seen_from(axes, velocity, angular_velocity)
+    a = seen_from(axes, acceleration, angular_acceleration)
+    own = np.zeros((3, 6))  # radiation, added mass, additional damping
     for i in range(6):
-        for k in range(1, 4):
-            own[k, i] = given[k, i]
+        own[0, i] = given[1, i]
         for j in range(6):
-            own[1, i] -= matrices[3, i, j] * v[j]
-            own[4, i] -= matrices[2, i, j] * a[j]
-            own[5, i] -= matrices[1, i, j] * v[j]
-            blocks[1, 0, i, j] = matrices[1, i, j] + matrices[3, i, j]
-            blocks[2, 0, i, j] = matrices[2, i, j]
-    for k in range(1, 3):
-        _turn_block(c, s, blocks[k, 0])
-    halves = own.reshape(12, 3)
+            own[0, i] -= matrices[3, i, j] * v[j]
+            own[1, i] -= matrices[2, i, j] * a[j]
+            own[2, i] -= matrices[1, i, j] * v[j]
+    for k in range(3):
+        _out_of(axes, own[k], parts[2 if k == 0 else 4 + k])
+    _block_out_of(axes, matrices[1] + matrices[3], blocks[1, 0])
+    _block_out_of(axes, matrices[2], blocks[2, 0])
+    waves = given.reshape(8, 3)
+    for k in range(2, 4):
+        parts[k + 1] = _turned(c, s, waves, 2 * k, waves, 2 * k + 1)
     _float(matrices[0], given[0], offset, rotation, parts[1], blocks[0, 0])
-    for k in range(1, 6):
-        parts[k + 1] = _turned(c, s, halves, 2 * k, halves, 2 * k + 1)
     parts[1] += wrench
     parts[0] = parts[1]
     for k in range(2, 7):

@@ -1,13 +1,14 @@
 """Linear potential flow on a rigid platform, as a load model.
 
-In axes that are turned about z by the platform's mean yaw, about its reference point,
+About the platform's reference point,
 
     F = F_b - C p - A_inf a - int K v + F_w + F_d - B_a v
 
 with the buoyancy F_b and its stiffness C (or the buoyancy of the displaced hull instead), the
 displacement p, velocity v and acceleration a of the reference point, wave excitation F_w,
-drift F_d and additional linear damping B_a. There are no products of velocities in A_inf: linear
-potential flow has none.
+drift F_d and additional linear damping B_a. F_w and F_d hold in axes that are turned about z by
+the platform's mean yaw; A_inf, K and B_a in those that lean with it on average, too. There are
+no products of velocities in A_inf: linear potential flow has none.
 """
 
 from __future__ import annotations
@@ -25,8 +26,8 @@ from galerna.turbine.platform import Platform
 
 from .drift import MeanDrift, SlowDrift
 from .excitation import WaveExcitation
-from .heading import MeanHeading
-from .platform_sum import PARTS, add_up, channels_of
+from .heading import MeanHeading, MeanLean, mean_axes
+from .platform_sum import PARTS, add_up, channels_of, seen_from
 from .radiation import (
     Convolution,
     Memory,
@@ -78,6 +79,7 @@ class PotentialFlow:
         self.coordinates: Mapping[str, Array] = {}
         fixed = heading if options.heading == "fixed" else None
         self.heading = MeanHeading(options.heading_cut_off_hz, fixed)
+        self.lean = MeanLean(options.lean_cut_off_hz, options.added_mass_axes == "upright")
         self.memory, added_mass, self.notes = _memory(database, options, radiation)
         self._excitation, self._drift = _wave_loads(database, sea, options)
         if self._excitation is not None:
@@ -91,26 +93,33 @@ class PotentialFlow:
         if buoyancy is None:
             self._given[0] = _buoyancy(database)
         self._psi, self._dt = 0.0, 0.0
+        self._tilt, self._axes = np.zeros(3), np.eye(3)
         self._waves_at = (nan, nan)
         self._trial = np.zeros((len(PARTS), 6))
         self._shown = np.zeros((len(PARTS), 6))
 
     def begin_step(self, time: float, dt: float, motion: Motion) -> None:
         """What the memory of the water makes of a step, in axes that it holds."""
-        self._psi, self._dt = self.heading.over_step(motion.rotation[0]), dt
+        self._dt = dt
+        self._take_axes(motion.rotation[0])
         self._given[1], self._matrices[3] = self.memory.begin(dt, self._velocity(motion))
 
+    def _take_axes(self, rotation: Array) -> None:
+        """Hold the mean axes of a step that begins with a rotation (3,3)."""
+        self._psi, self._tilt = self.heading.over_step(rotation), self.lean.over_step(rotation)
+        self._axes = mean_axes(self._psi, self._tilt)
+
     def _velocity(self, motion: Motion) -> Array:
-        """Velocity (6,) of the platform in the heading's axes."""
-        c, s = cos(self._psi), sin(self._psi)
-        (x, y, z), (p, q, r) = motion.velocity[0], motion.angular_velocity[0]
-        return np.array([c * x + s * y, c * y - s * x, z, c * p + s * q, c * q - s * p, r])
+        """Velocity (6,) of the platform in its mean axes."""
+        return seen_from(self._axes, motion.velocity, motion.angular_velocity)
 
     def loads(self, time: float, motion: Motion) -> Loads:
         """Force and moment on the platform with their stiffness, damping and mass."""
+        if self._dt == 0.0:  # before the first step
+            self._take_axes(motion.rotation[0])
         if (time, self._psi) != self._waves_at:  # a step asks more than once
             self._take_waves(time)
-        return self._sum(motion, self._psi, self._given, self._trial)
+        return self._sum(motion, self._psi, self._axes, self._given, self._trial)
 
     def _take_waves(self, time: float) -> None:
         """Excitation and drift at a time s."""
@@ -120,8 +129,8 @@ class PotentialFlow:
             self._given[3] = self._drift.at(time, self._psi)
         self._waves_at = time, self._psi
 
-    def _sum(self, motion: Motion, psi: float, given: Array, parts: Array) -> Loads:
-        """All loads at a heading rad; fills ``parts`` (7,6)."""
+    def _sum(self, motion: Motion, psi: float, axes: Array, given: Array, parts: Array) -> Loads:
+        """All loads at a heading rad and in mean axes (3,3); fills ``parts`` (7,6)."""
         blocks = np.empty((3, 1, 6, 6))
         force, moment = np.empty((1, 3)), np.empty((1, 3))
         wrench = np.zeros(6)
@@ -129,7 +138,7 @@ class PotentialFlow:
             wrench, stiffness = self.buoyancy.loads(motion.position[0], motion.rotation[0])
         add_up(
             motion.position, motion.rotation, motion.velocity, motion.angular_velocity,
-            motion.acceleration, motion.angular_acceleration, cos(psi), sin(psi),
+            motion.acceleration, motion.angular_acceleration, cos(psi), sin(psi), axes,
             self._reference, self._matrices, given, wrench, parts, force, moment, blocks,
         )  # fmt: skip
         if self.buoyancy is not None:
@@ -145,12 +154,22 @@ class PotentialFlow:
         given[0] = self._given[0]
         if self._drift is not None:
             given[3] = self._drift.mean(psi)
-        return self._sum(rest, psi, given, np.empty((len(PARTS), 6)))
+        return self._sum(rest, psi, self.axes_at(motion), given, np.empty((len(PARTS), 6)))
+
+    def axes_at(self, motion: Motion) -> Array:
+        """Axes (3,3) of added mass and radiation as a step or a linear motion begins there."""
+        rotation = motion.rotation[0]
+        return mean_axes(self.heading.settled(rotation), self.lean.over_step(rotation))
+
+    def settle(self, motion: Motion) -> None:
+        """Take the platform's place at rest, about which it is going to move."""
+        self.lean.settle(motion.rotation[0])
 
     def end_step(self, time: float, motion: Motion) -> None:
-        """Commit the memory and the mean yaw; keep the loads for the record."""
+        """Commit the memory, the mean yaw and lean; keep the loads for the record."""
         self.memory.commit(self._velocity(motion))
         self.heading.commit(self._dt, self._psi, motion.rotation[0])
+        self.lean.commit(self._dt, self._tilt, motion.rotation[0])
         self._shown[:] = self._trial
 
     def record(self) -> Mapping[str, float | Array]:
@@ -159,13 +178,14 @@ class PotentialFlow:
         return dict(zip(names, self._shown.ravel().tolist(), strict=True))
 
     def state(self) -> dict[str, np.ndarray]:
-        """Memory of the water and mean yaw."""
-        return self.memory.state() | self.heading.state()
+        """Memory of the water, mean yaw and lean."""
+        return self.memory.state() | self.heading.state() | self.lean.state()
 
     def restore(self, state: Mapping[str, np.ndarray]) -> None:
         """Take ``state`` back."""
         self.memory.restore(state)
         self.heading.restore(state)
+        self.lean.restore(state)
 
 
 def _memory(

@@ -15,7 +15,7 @@ KEPT_STEPS = 8  #: step sizes whose matrices are kept
 
 
 class Memory(Protocol):
-    """Radiation force ``free - block @ v1`` at the end of a step, axes of the platform's heading.
+    """Radiation force ``free - block @ v1`` at the end of a step, the platform's mean axes.
 
     ``begin`` takes dt and the velocity (6,) at the step's start and gives ``free`` (6,) N, N m and
     ``block`` (6,6); ``commit`` takes the velocity at its end.
