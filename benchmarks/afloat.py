@@ -6,10 +6,12 @@ import json
 import subprocess
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from statistics import median
 from typing import Any
+
+import numpy as np
 
 import galerna
 from galerna.case import load
@@ -21,6 +23,7 @@ from .machine import march, timed
 
 DEMO = Path(__file__).parents[1] / "examples" / "demo.yaml"
 DURATION, REPEATS = 20.0, 3  #: simulated s of one timing
+BLOCK, BLOCKS = 0.5, 60  #: simulated s of one turn of two machines, and turns
 WATER = ("hydrodynamics", "drag", "mooring")
 OPENFAST = 1.0 / 0.74  #: times real time, v5.0.0, linear modes, 0.025 s, on a machine of this kind
 
@@ -48,10 +51,12 @@ SHARPY_WANTED = 200.0  #: times faster
 
 
 class Watch:
-    """CPU seconds in the calls of a machine's water loads."""
+    """Seconds of a clock in the calls of a machine's water loads, less those of reading it."""
 
-    def __init__(self, machine: Machine) -> None:
+    def __init__(self, machine: Machine, clock: Callable[[], float] = time.perf_counter) -> None:
         self.spent = 0.0
+        self._clock = clock
+        self._reading = median(-clock() + clock() for _ in range(1001))
         for name in WATER:
             model = machine.simulation.load_models.get(name)
             if model is None:
@@ -61,9 +66,9 @@ class Watch:
 
     def _watched(self, call: Any) -> Any:
         def timed_call(*arguments: float | Motion) -> Loads | None:
-            start = time.perf_counter()
+            start = self._clock()
             answer = call(*arguments)
-            self.spent += time.perf_counter() - start
+            self.spent += self._clock() - start - self._reading
             return answer
 
         return timed_call
@@ -87,27 +92,48 @@ def pace() -> Sequence[Figure]:
 
 
 def long_seas() -> Sequence[Figure]:
-    """Time of the water's loads in a step for ten minutes and for an hour of waves."""
-    figures = []
-    costs = {}
-    for minutes in (10, 60):
-        case = {
-            **{key: value for key, value in LATTICE.items() if key != "aerodynamics"},
-            "structure": "rigid",
-            "duration_s": 60.0 * minutes,
-            "time_step_s": 0.02,
-        }
-        machine = build_machine(load(case))
-        march(machine.simulation, 2.0)
-        watch = Watch(machine)
-        march(machine.simulation, DURATION)
-        costs[minutes] = 1e6 * watch.spent / (DURATION / 0.02)
-        assert machine.afloat is not None
-        count = len(machine.afloat.sea.frequency)
-        what = f"water's loads in a step, sea of {minutes} min, {count} frequencies"
-        figures.append(Figure(what, costs[minutes], "us"))
-    figures.append(Figure("an hour's over ten minutes'", costs[60] / costs[10], "-", 1.15))
-    return figures
+    """Time of the water's loads in a step for ten minutes and for an hour of waves.
+
+    The two take turns in short blocks of processor time, so that what else the computer
+    does meets both.
+    """
+    seas = [_in_a_sea_of(minutes) for minutes in (10, 60)]
+    watches = [Watch(machine, time.process_time) for machine in seas]
+    costs = np.array([[_block(*each) for each in zip(seas, watches, strict=True)]
+                      for _ in range(BLOCKS)])  # fmt: skip
+    figures = [
+        Figure(f"water's loads in a step, sea of {minutes} min, {count} frequencies", cost, "us")
+        for minutes, count, cost in zip(
+            (10, 60), map(_frequencies, seas), np.median(costs, axis=0).tolist(), strict=True
+        )
+    ]
+    ratio = float(np.median(costs[:, 1] / costs[:, 0]))
+    return (*figures, Figure("an hour's over ten minutes', of blocks in turn", ratio, "-", 1.15))
+
+
+def _in_a_sea_of(minutes: float) -> Machine:
+    """The rigid machine in a sea of so many minutes, two seconds after its start."""
+    case = {
+        **{key: value for key, value in LATTICE.items() if key != "aerodynamics"},
+        "structure": "rigid",
+        "duration_s": 60.0 * minutes,
+        "time_step_s": 0.02,
+    }
+    machine = build_machine(load(case))
+    march(machine.simulation, 2.0)
+    return machine
+
+
+def _frequencies(machine: Machine) -> int:
+    assert machine.afloat is not None
+    return len(machine.afloat.sea.frequency)
+
+
+def _block(machine: Machine, watch: Watch) -> float:
+    """Microseconds of the water's loads in a step, over one block of steps."""
+    before = watch.spent
+    march(machine.simulation, BLOCK)
+    return 1e6 * (watch.spent - before) * machine.simulation.time_step / BLOCK
 
 
 MEMORY = """
