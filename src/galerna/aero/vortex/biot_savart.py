@@ -42,10 +42,7 @@ def direct_velocity(sheets: Sequence[Sheet], points: Array, precision: str = "do
     velocity = np.zeros_like(flat)
     if len(flat) and len(sheets):
         table, shapes = segment_table(sheets)
-        low = high = flat[0]
-        for x in (flat, table[:, :3]):
-            low, high = np.minimum(low, x.min(axis=0)), np.maximum(high, x.max(axis=0))
-        far = float(np.max(high - low)) > _REACH
+        far = _extent(table, flat) > _REACH
         _sum(table, shapes, flat, velocity, np.inf if far else _NEAR[precision])
     return velocity.reshape(points.shape)
 
@@ -88,6 +85,20 @@ def _fill(table, first, vertices, circulation, core):  # type: ignore[no-untyped
                 strength -= circulation[i - 1, j] if j < columns else 0.0
                 core_squared = 0.5 * (core[i, j] ** 2 + core[i - 1, j] ** 2)
                 set_segment(numbers[9:15], vertices[i - 1, j], x, core_squared, strength)
+
+
+@njit(cache=True, error_model="numpy", fastmath=FASTMATH)
+def _extent(table, points):  # type: ignore[no-untyped-def]
+    """Largest extent m along an axis of the vertices in a table and points (k,3) together."""
+    largest = 0.0
+    for i in range(3):
+        low = high = points[0, i]
+        for k in range(len(points)):
+            low, high = min(low, points[k, i]), max(high, points[k, i])
+        for k in range(len(table)):
+            low, high = min(low, table[k, i]), max(high, table[k, i])
+        largest = max(largest, high - low)
+    return largest
 
 
 @njit(cache=True, parallel=True, error_model="numpy", fastmath=FASTMATH)
