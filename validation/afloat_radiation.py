@@ -7,12 +7,17 @@ from dataclasses import replace
 
 import numpy as np
 
+from galerna.case import load
 from galerna.contract import Array, Motion
+from galerna.coupling.build import turbine_options
+from galerna.coupling.floating_report import modes_of
 from galerna.hydro.database import HydroDatabase
+from galerna.hydro.heading import lean_of
 from galerna.hydro.platform_options import PlatformOptions
 from galerna.hydro.potential_flow import PotentialFlow
 from galerna.hydro.radiation import RadiationStateSpace, fit_radiation, impulse_response
 from galerna.hydro.rigid import point_mass
+from galerna.machine import build_machine
 from galerna.structure.frames import exp_so3
 from galerna.turbine.platform import Platform
 
@@ -188,7 +193,46 @@ def decays() -> Iterator[Check]:
                     "convolution, 60 s of memory", 0.01, "1")  # fmt: skip
 
 
+def leaning() -> Iterator[Check]:
+    """Yaw of the spar about where it floats in wind, its rotor held."""
+    for axes, tolerance in (("mean_lean", 0.02), ("upright", None)):
+        for wind in (4.0, 18.0, 11.4):
+            here = build_machine(load(WORKING | {
+                "inflow": {"wind_speed_m_s": wind}, "platform": {"added_mass_axes": axes},
+            }))  # fmt: skip
+            afloat = here.afloat
+            assert afloat is not None
+            assert afloat.floating is not None
+            assert afloat.floating.burden is not None
+            pose = afloat.floating.settled
+            options = turbine_options(here.case, here.turbine, here.operation, afloat)
+            modes = modes_of(
+                here.turbine, options, afloat.floating.water, afloat.floating.burden, pose,
+                afloat.database,
+            )  # fmt: skip
+            yaw = next(mode.frequency for mode in modes if mode.name == "yaw")
+            lean = float(np.rad2deg(np.linalg.norm(lean_of(pose.rotation))))
+            text = f"yaw at {wind:g} m/s, a lean of {lean:.1f} deg, {axes.replace('_', ' ')}"
+            yield Check(text, yaw, 0.121, UPRIGHT, tolerance, "Hz", True)
+
+
+UPRIGHT = "OC3 phase IV codes as commonly quoted, upright"
+WORKING = {
+    "galerna": 1, "turbine": "nrel5mw_oc3", "duration_s": 1.0, "structure": "rigid",
+    "sea": "still", "control": "baseline",
+}  # fmt: skip
 CASES = [
+    Case(
+        "radiation_lean",
+        "afloat",
+        "Yaw of a spar that leans",
+        lambda: tuple(leaning()),
+        60.0,
+        "A body of revolution moves no water as it turns about its own axis, leaning or not, and "
+        "its lines hold it nearly alike: its frequency in yaw is that of the upright spar. With "
+        "coefficients that stay upright, as OpenFAST has them, a share of the added mass in roll "
+        "comes in, and slows it.",
+    ),
     Case(
         "radiation_fit",
         "afloat",
