@@ -28,7 +28,6 @@ from galerna.hydro.hydrostatics import NonlinearBuoyancy
 from galerna.hydro.mooring import mooring_loads
 from galerna.hydro.platform_options import PlatformOptions
 from galerna.hydro.potential_flow import PotentialFlow
-from galerna.hydro.radiation import RadiationStateSpace
 from galerna.hydro.radiation.stored import stored_radiation
 from galerna.hydro.rigid import MODES
 from galerna.hydro.sea_options import SeaOptions
@@ -135,17 +134,17 @@ def build_water(case: LoadedCase, turbine: Turbine, duration: float | None = Non
         )
     with case.blame("platform"):
         path = _coefficients_file(case, turbine, platform, options)
-        database = like_the_sea(read_database(path, platform), sea)
-        _require_hull(database, platform, path)
-        fit = stored_radiation(path, database.reference_point, sea.density)
+        flow = _potential_flow(path, platform, sea, options)
         carrier = carrier_of(platform, turbine.tower, options)
-        models = _models(platform, database, sea, options, settings.sea, carrier, fit)
+        models = {"hydrodynamics": flow} | _carried(platform, sea, options, settings.sea, carrier)
         at_rest = models
         if carrier.stations.part != "platform":
             rigid = Carrier.rigid(platform)
             at_rest = models | _carried(platform, sea, options, settings.sea, rigid)
         floating = _floating(settings, platform, at_rest, options)
-    return Afloat(sea, database, models, WaveProbe(sea, platform.reference_point[:2]), floating)
+    return Afloat(
+        sea, flow.database, models, WaveProbe(sea, platform.reference_point[:2]), floating
+    )
 
 
 def _platform_of(turbine: Turbine, depth: float | None) -> Platform:
@@ -216,26 +215,18 @@ def scaled(base: HydroDatabase, factor: float) -> HydroDatabase:
     return replace(base, water_density=factor * base.water_density, **changed)
 
 
-def _models(
-    platform: Platform,
-    database: HydroDatabase,
-    sea: Sea,
-    options: PlatformOptions,
-    of_sea: SeaOptions,
-    carrier: Carrier,
-    radiation: RadiationStateSpace | None,
-) -> dict[str, LoadModel]:
-    """The loads of the water and the lines, by name."""
+def _potential_flow(
+    path: Path, platform: Platform, sea: Sea, options: PlatformOptions
+) -> PotentialFlow:
+    """The loads of potential flow with the coefficients of a file."""
+    database = like_the_sea(read_database(path, platform), sea)
+    _require_hull(database, platform, path)
+    fit = stored_radiation(path, database.reference_point, sea.density)
     buoyancy = None
     if options.hydrostatics == "nonlinear":
         hull = build_hull(platform.members)
         buoyancy = NonlinearBuoyancy(hull, platform.reference_point, sea.density, sea.gravity)
-    models: dict[str, LoadModel] = {
-        "hydrodynamics": PotentialFlow(
-            platform, database, sea, options, buoyancy=buoyancy, radiation=radiation
-        )
-    }
-    return models | _carried(platform, sea, options, of_sea, carrier)
+    return PotentialFlow(platform, database, sea, options, buoyancy=buoyancy, radiation=fit)
 
 
 def _carried(

@@ -14,6 +14,7 @@ no products of velocities in A_inf: linear potential flow has none.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from math import cos, inf, nan, sin
 from typing import Protocol
 
@@ -74,13 +75,15 @@ class PotentialFlow:
         reference = np.array(platform.reference_point, dtype=float)
         if np.abs(database.reference_point - reference).max() > 1e-9:
             database = database.moved(reference)
-        self.database, self.buoyancy = database, buoyancy
+        self.buoyancy = buoyancy
         self.channels = channels_of()
         self.coordinates: Mapping[str, Array] = {}
         fixed = heading if options.heading == "fixed" else None
         self.heading = MeanHeading(options.heading_cut_off_hz, fixed)
         self.lean = MeanLean(options.lean_cut_off_hz, options.added_mass_axes == "upright")
         self.memory, added_mass, self.notes = _memory(database, options, radiation)
+        #: the coefficients, with the added mass at infinite frequency that goes with the memory
+        self.database = replace(database, added_mass_infinite=added_mass)
         self._excitation, self._drift = _wave_loads(database, sea, options)
         if self._excitation is not None:
             self.notes += self._excitation.notes
