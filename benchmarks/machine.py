@@ -8,6 +8,7 @@ from statistics import median
 from typing import Any
 
 import galerna
+from galerna.contract import Loads
 from galerna.simulation import Simulation
 
 from .framework import Benchmark, Figure
@@ -57,9 +58,9 @@ class Counted:
         self.balances = 0
         balance = simulation.structure.balance
 
-        def counting(*arguments: Any) -> bool:
+        def counting(loads: Sequence[Loads]) -> bool:
             self.balances += 1
-            return balance(*arguments)
+            return balance(loads)
 
         simulation.structure.balance = counting  # type: ignore[method-assign]
 

@@ -27,7 +27,8 @@ class Watch:
         lattice = machine.vortex_lattice
         assert lattice is not None
         self.begin, self.evaluate = lattice.begin_step, lattice.loads
-        lattice.begin_step, lattice.loads = self.begin_step, self.loads  # type: ignore[method-assign]
+        lattice.begin_step = self.begin_step  # type: ignore[method-assign, assignment]
+        lattice.loads = self.loads  # type: ignore[method-assign, assignment]
         self.reset()
 
     def reset(self) -> None:

@@ -10,6 +10,7 @@ import statistics
 import sys
 import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import sharpy.sharpy_main
@@ -19,7 +20,7 @@ from sharpy.solvers.nonlineardynamicmultibody import NonLinearDynamicMultibody
 GRAVITY_AXIS_ANGLES = (np.pi / 2, 0.0)  # of the two links from the vertical
 
 
-def link(nodes: int, angle: float, root: np.ndarray) -> tuple[object, np.ndarray]:
+def link(nodes: int, angle: float, root: np.ndarray) -> tuple[Any, np.ndarray]:
     """A uniform beam of 1 m that hangs from ``root`` at an angle, and its nodes."""
     info = cases.AeroelasticInformation()
     span = np.linspace(0.0, 1.0, nodes)
@@ -45,7 +46,7 @@ def link(nodes: int, angle: float, root: np.ndarray) -> tuple[object, np.ndarray
     return info, at
 
 
-def settings(simulation: object, folder: str, name: str, dt: float, steps: int) -> None:
+def settings(simulation: Any, folder: str, name: str, dt: float, steps: int) -> None:
     """A structural run in time, without air."""
     solvers = simulation.solvers
     solvers["SHARPy"].update(

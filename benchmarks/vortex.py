@@ -6,6 +6,7 @@ import os
 import resource
 import time
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 
@@ -95,7 +96,7 @@ def steady_rotor() -> Sequence[Figure]:
     figures = []
     for name, symmetry in (("one blade by symmetry", True), ("all blades", False)):
         ours = cpu_seconds(
-            lambda s=symmetry: solve_steady(surfaces, wind, axis=AXIS, ages=ages, symmetry=s)
+            partial(solve_steady, surfaces, wind, axis=AXIS, ages=ages, symmetry=symmetry)
         )
         figures.append(
             Figure(f"{NREL}: steady solution, {name}, CPU time", ours, "s",
@@ -125,7 +126,7 @@ def large_steady_rotor() -> Sequence[Figure]:
 def large_free_step() -> Sequence[Figure]:
     """A free-wake step of 3 x 28 x 16 panels with 100,000 in the wake."""
     rotor, rows = Rotor(16, 28), 1191
-    ages = np.arange(rows + 1) * STEP_DEG * DEG / SPEED
+    ages = np.arange(rows + 1, dtype=float) * STEP_DEG * DEG / SPEED
     options = UnsteadyOptions(free=True, core=VortexCore(0.3), tree_error=ERROR)
     cpu, wall = step_cost(rotor, ages, options, steps=2)
     name = f"3 x 28 x 16 panels, {3 * 28 * rows:,} in a free wake: step, treecode"
@@ -155,7 +156,8 @@ def tree_scaling() -> Sequence[Figure]:
         Figure(f"treecode at {ERROR:g}, {size:,} panels at their vertices, CPU time", cost, "s")
         for size, cost in costs
     ]
-    slope = float(np.polyfit(*np.log(np.array(costs).T), 1)[0])
+    size, cost = np.log(np.array(costs).T)
+    slope = float(np.polyfit(size, cost, 1)[0])
     return [*figures, Figure("exponent of the treecode's cost, 1e4 to 3e5 panels", slope, "-", 1.2)]
 
 

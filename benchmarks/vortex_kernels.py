@@ -8,6 +8,7 @@ import subprocess
 import tempfile
 import time
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 
 import numba
@@ -134,10 +135,10 @@ def kernels() -> Sequence[Figure]:
     numba.set_num_threads(1)
     with tempfile.TemporaryDirectory() as folder:
         for precision, real, wanted in (("double", "double", 315.0), ("single", "float", 560.0)):
-            ours = cpu_seconds(lambda p=precision: direct_velocity([sheet], points, p)) / pairs
+            ours = cpu_seconds(partial(direct_velocity, [sheet], points, precision)) / pairs
             library, theirs = compiled_loop(real, folder), None
             if library is not None:
-                theirs = cpu_seconds(lambda lib=library: in_cpp(lib, table, rows, columns, points))
+                theirs = cpu_seconds(partial(in_cpp, library, table, rows, columns, points))
                 theirs /= pairs
             name = f"direct sum in {precision} precision, CPU time a panel and point"
             peer = "C++, the same loop" if theirs else ""

@@ -42,8 +42,8 @@ def spectra() -> Figure:
             frequency, power = spectrum(afloat_operation.operated(name), quantity)
             if power.max() > 0.0:
                 ax.loglog(frequency[1:], power[1:], color=colour, lw=1.1, label=name)
-        for frequency in NATURAL:
-            ax.axvline(frequency, color=GREY, lw=0.7, ls=":")
+        for natural in NATURAL:
+            ax.axvline(natural, color=GREY, lw=0.7, ls=":")
         ax.set(xlim=(0.005, 1.2), title=f"{quantity} [{QUANTITIES[quantity][1]}²/Hz]")
         ax.set_ylim(bottom=ax.get_ylim()[1] * 1e-8)
     for ax in axes[1]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import matplotlib
@@ -15,27 +16,49 @@ from matplotlib.patches import Arc, Polygon
 INK, WIND, TURN, BODY = "#1b2a41", "#2a7fb8", "#c8553d", "#8a97a6"
 HERE = Path(__file__).parent
 
+Place = Sequence[float] | np.ndarray  #: (2,) on the page
 
-def arrow(ax: Axes, start, end, label: str = "", color: str = INK, offset=(0.0, 0.0)) -> None:
+
+def point(place: Place) -> tuple[float, float]:
+    x, y = place
+    return float(x), float(y)
+
+
+def arrow(
+    ax: Axes,
+    start: Place,
+    end: Place,
+    label: str = "",
+    color: str = INK,
+    offset: Place = (0.0, 0.0),
+) -> None:
     """A labelled arrow; the label stands beside its head."""
-    ax.annotate("", end, start, arrowprops={"arrowstyle": "-|>", "color": color, "lw": 1.6})
+    ax.annotate(
+        "", point(end), point(start), arrowprops={"arrowstyle": "-|>", "color": color, "lw": 1.6}
+    )
     if label:
         ax.text(end[0] + offset[0], end[1] + offset[1], label, color=color, ha="center",
                 va="center", fontsize=10)  # fmt: skip
 
 
-def turn(ax: Axes, center, radius: float, start: float, end: float, label: str, at) -> None:
+def turn(
+    ax: Axes, center: Place, radius: float, start: float, end: float, label: str, at: Place
+) -> None:
     """An arc from ``start`` to ``end`` deg with a head at its end: a positive angle."""
     low, high = min(start, end), max(start, end)
-    ax.add_patch(Arc(center, 2 * radius, 2 * radius, theta1=low, theta2=high, color=TURN, lw=1.6))
+    ax.add_patch(
+        Arc(point(center), 2 * radius, 2 * radius, theta1=low, theta2=high, color=TURN, lw=1.6)
+    )
     angle, sense = np.radians(end), np.sign(end - start)
     tip = np.add(center, radius * np.array([np.cos(angle), np.sin(angle)]))
     back = tip - 0.02 * sense * np.array([-np.sin(angle), np.cos(angle)])
-    ax.annotate("", tip, back, arrowprops={"arrowstyle": "-|>", "color": TURN, "lw": 1.6})
-    ax.text(*at, label, color=TURN, fontsize=10, ha="center", va="center")
+    ax.annotate(
+        "", point(tip), point(back), arrowprops={"arrowstyle": "-|>", "color": TURN, "lw": 1.6}
+    )
+    ax.text(*point(at), label, color=TURN, fontsize=10, ha="center", va="center")
 
 
-def wind(ax: Axes, x: float, heights) -> None:
+def wind(ax: Axes, x: float, heights: Sequence[float]) -> None:
     """Arrows of the wind, from the left."""
     for y in heights:
         arrow(ax, (x, y), (x + 0.45, y), color=WIND)
@@ -70,7 +93,7 @@ def front_view(ax: Axes) -> None:
     for number, azimuth in enumerate((0, 120, 240), 1):
         tip = 1.5 * np.array([np.sin(np.radians(azimuth)), np.cos(np.radians(azimuth))])
         ax.plot([0, tip[0]], [0, tip[1]], color=INK, lw=3)
-        ax.text(*(1.13 * tip), f"blade {number}", ha="center", va="center", fontsize=9)
+        ax.text(*point(1.13 * tip), f"blade {number}", ha="center", va="center", fontsize=9)
     turn(ax, (0, 0), 0.8, 88, 35, "azimuth, rotor speed > 0", (1.15, 0.98))
     arrow(ax, (0, -2.0), (-0.7, -2.0), "y", offset=(-0.1, 0))
     arrow(ax, (0, -2.0), (0, -1.3), "z", offset=(0.13, 0))
@@ -84,9 +107,9 @@ def top_view(ax: Axes) -> None:
     hub = -0.5 * shaft
     ax.plot(*np.transpose([hub, hub + 1.1 * shaft]), color=BODY, lw=9, solid_capstyle="butt")
     ax.plot(*np.transpose([hub - 1.4 * right, hub + 1.4 * right]), color=INK, lw=3)
-    low = hub + 1.42 * right + [0.1, -0.16]
-    ax.text(*low, "azimuth 90°\n(downwind)", ha="center", va="top", fontsize=9)
-    ax.text(*(hub - 1.42 * right + [-0.1, 0.14]), "azimuth 270°\n(upwind)", ha="center", fontsize=9)
+    low, high = hub + 1.42 * right + [0.1, -0.16], hub - 1.42 * right + [-0.1, 0.14]
+    ax.text(*point(low), "azimuth 90°\n(downwind)", ha="center", va="top", fontsize=9)
+    ax.text(*point(high), "azimuth 270°\n(upwind)", ha="center", fontsize=9)
     ax.plot([0, 1.6], [0, 0], color=BODY, lw=1, ls=":")
     turn(ax, (0, 0), 1.25, 0, 30, "nacelle yaw > 0", (1.6, 0.95))
     arrow(ax, (-1.5, -1.75), (-0.8, -1.75), "x", offset=(0.1, 0))

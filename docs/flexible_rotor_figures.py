@@ -131,7 +131,7 @@ def _started(wind: float) -> tuple[Array, Array]:
         pitch = structure.pitch_angles(state.time)[0]
         rows.append([structure.rotor_speed, (now - before).mean(), downwind, pitch])
         if simulation.time > 20.0 - 1e-6:
-            return 0.025 * np.arange(len(rows)), np.array(rows)
+            return 0.025 * np.arange(len(rows), dtype=float), np.array(rows)
         simulation.advance()
 
 

@@ -40,7 +40,7 @@ def history(dt: float, scheme: Scheme) -> tuple[Array, Array]:
         (s.position[first][0], bending(s, 1, first), bending(s, first + 1, second))
         for s in Integrator(system, scheme).march(state, dt, round(DURATION / dt))
     ]
-    return dt * np.arange(1, len(rows) + 1), np.array(rows)
+    return dt * np.arange(1, len(rows) + 1, dtype=float), np.array(rows)
 
 
 def draw() -> Path:

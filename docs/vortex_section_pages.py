@@ -144,7 +144,7 @@ def largest_eigenvalue(mixing: float, panels: int = 120, aspect_ratio: float = 8
     plate = Polar(1e6, np.array([-np.pi, np.pi]), *np.zeros((3, 2)))
     section = SectionLift.of_lattice(wing.lattice)
     model = Decambering([SectionPolars.of_polar(plate, panels)], [section], ["wing"], mixing)
-    response = model.response(lambda b: system.solve_with_strips(b, strips), [wing])
+    response = model.response(lambda b: system.solve(b, strips), [wing])
     return float(np.linalg.eigvals(model.feedback([wing], response)).real.max())
 
 

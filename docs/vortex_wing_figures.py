@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 import matplotlib
@@ -68,10 +68,11 @@ def oscillation() -> Path:
     """Lift of a plate in pitch and plunge beside Theodorsen's."""
     figure, axes = plt.subplots(1, 2, figsize=(11, 4), constrained_layout=True)
     line, points = np.geomspace(0.03, 1.2, 100), (0.05, 0.1, 0.2, 0.4, 0.7, 1.0)
+    parts: tuple[Callable[[np.ndarray], np.ndarray], ...] = (np.abs, _degrees)
     for motion, colour in (("pitch", "tab:blue"), ("plunge", "tab:red")):
         theory = pitch_lift(line, -0.5) if motion == "pitch" else plunge_lift(line)
         found = np.array([plates.oscillating_lift(motion, k) for k in points])
-        for axis, part in zip(axes, (np.abs, _degrees), strict=True):
+        for axis, part in zip(axes, parts, strict=True):
             axis.semilogx(line, part(theory), color=colour, label=f"{motion}, Theodorsen")
             axis.semilogx(points, part(found), "o", color=colour, label=f"{motion}, lattice")
     _label(axes[0], "reduced frequency", "|lift coefficient| over amplitude [1/rad]")
@@ -226,7 +227,7 @@ FIGURES: dict[str, Callable[[], Path]] = {
     "wave_forces": wave_forces,
     "kept_lift": kept_lift,
     "mean_drag": mean_drag,
-    **{f"peaks_{kind}": lambda kind=kind: peaks(kind) for kind in KINDS},
+    **{f"peaks_{kind}": partial(peaks, kind) for kind in KINDS},
 }
 
 

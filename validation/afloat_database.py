@@ -8,7 +8,7 @@ import numpy as np
 from scipy.special import h2vp, jvp
 
 from galerna.contract import Array
-from galerna.hydro.database import HydroDatabase
+from galerna.hydro.database import Complex, HydroDatabase
 from galerna.hydro.database_checks import haskind_ratio, long_waves, smallest_damping
 from galerna.hydro.netcdf import read_netcdf
 from galerna.turbine import library
@@ -61,7 +61,9 @@ def against_wamit() -> Sequence[Check]:
     return checks
 
 
-def _differences(name: str, found: Array, reference: Array, tolerance: float) -> list[Check]:
+def _differences(
+    name: str, found: Array | Complex, reference: Array | Complex, tolerance: float
+) -> list[Check]:
     apart = np.abs(found - reference) / np.abs(reference).max()
     root = float(np.sqrt(np.mean(apart**2)))
     return [

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +11,7 @@ from galerna import turbine
 from galerna.errors import InputError
 from galerna.hydro.hull import build_hull
 from galerna.hydro.hydrostatics import Hydrostatics, hydrostatics
+from galerna.turbine.platform import Member
 from galerna.turbine.summary import summary
 from galerna.units import SEA_WATER, STANDARD_GRAVITY
 
@@ -23,13 +24,19 @@ WEIGHT = SEA_WATER * STANDARD_GRAVITY
 PANELS = 2.5e-3  #: 60 panels inside a circle, as WAMIT's: sin(6 deg) / (6 deg) is 0.18 % less
 
 
+def _members(name: str) -> Sequence[Member]:
+    platform = turbine.load(name).platform
+    assert platform is not None
+    return platform.members
+
+
 def _still(name: str) -> Hydrostatics:
-    return hydrostatics(build_hull(turbine.load(name).platform.members))
+    return hydrostatics(build_hull(_members(name)))
 
 
 def _inscribed() -> Hydrostatics:
     """The spar with 60 panels around, whose corners lie on the circles as WAMIT's do."""
-    (spar,) = turbine.load("nrel5mw_oc3").platform.members
+    (spar,) = _members("nrel5mw_oc3")
     angle = 2.0 * np.pi / 60
     sides = spar.sides * np.sqrt(np.sin(angle) / angle)
     return hydrostatics(build_hull([replace(spar, sides=sides)], facets=60))

@@ -8,6 +8,7 @@ from functools import cache
 
 import numpy as np
 from scipy.optimize import brentq
+from xarray import Dataset
 
 from galerna import turbine as turbines
 from galerna.aero.bem.options import BemOptions
@@ -73,7 +74,7 @@ def _spanwise(
 
 
 def _compare_span(
-    name: str, point: object, rows: list[dict[str, str]], judged: bool
+    name: str, point: Dataset, rows: list[dict[str, str]], judged: bool
 ) -> Iterator[Check]:
     radius, *reference = columns(
         rows,

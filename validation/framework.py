@@ -71,7 +71,7 @@ class Case:
     name: str
     group: str
     title: str
-    run: Callable[[], Sequence[Check]]
+    run: Callable[[], Iterable[Check]]
     seconds: float
     story: str = ""
 

@@ -124,7 +124,7 @@ def peak(place: Array, lift: Array) -> tuple[float, float]:
     return float(top), float(np.polyval(curve, top))
 
 
-def trend(ratio: float, sweeps: Sequence[float]) -> tuple[Array, Array]:
+def trend(ratio: float, sweeps: Sequence[float] | Array) -> tuple[Array, Array]:
     """Largest lift coefficient over that without sideslip, and its place, for sweeps rad.
 
     As a wing that is turned: ``ratio`` is span over largest chord of the straight wing.

@@ -46,9 +46,9 @@ def march(
 
 def rigid_pendulum() -> System:
     s = Structure(GRAVITY)
-    bob = rigid_body(1.0, [0.0, 0.0, 1.0], np.full(3, 1e-7))
+    bob = rigid_body(1.0, np.array([0.0, 0.0, 1.0]), np.full(3, 1e-7))
     s.frame("one", np.zeros(3), ALONG_X, bob)
-    s.frame("two", [1.0, 0.0, 0.0], DOWN, bob)
+    s.frame("two", np.array([1.0, 0.0, 0.0]), DOWN, bob)
     s.join(hinge("shoulder", GROUND, "one", np.zeros(3), Y))
     s.join(hinge("elbow", "one", "two", np.array([1.0, 0.0, 0.0]), Y))
     return s.build()
@@ -63,7 +63,7 @@ def angles_from_vertical(states: Sequence[State]) -> Array:
 def rigid_double_pendulum() -> Sequence[Check]:
     system, dt = rigid_pendulum(), 2.5e-4
     states = march(system, dt, 2.0, Scheme.generalized_alpha(0.9))
-    exact = mechanics.double_pendulum(dt * np.arange(len(states)))
+    exact = mechanics.double_pendulum(dt * np.arange(len(states), dtype=float))
     error = np.abs(angles_from_vertical(states) - exact).max(axis=0)
     violation = max(system.violation(state) for state in states[::20])
     checks = [
@@ -195,7 +195,7 @@ def four_bar() -> Sequence[Check]:
         x = (b - a) / length
         axes = np.stack([x, Y, np.cross(x, Y)], axis=1)
         moments = length**3 / 12 * np.array([1e-6, 1.0, 1.0])
-        s.frame(name, a, axes, rigid_body(length, [length / 2, 0.0, 0.0], moments))
+        s.frame(name, a, axes, rigid_body(length, np.array([length / 2, 0.0, 0.0]), moments))
     s.join(hinge("A", GROUND, "crank", np.zeros(3), Y))
     s.join(hinge("B", "crank", "coupler", crank, Y))
     s.join(spherical("C", "coupler", "rocker", elbow))
@@ -225,8 +225,8 @@ def rolling_disc() -> Sequence[Check]:
     inertia = 0.25 * radius**2 * np.array([1.0, 2.0, 1.0])
     s = Structure(GRAVITY)
     s.frame("disc", -arm, axes, rigid_body(1.0, None, inertia))
-    s.constrain(TouchesPlane("floor", "disc", radius, Y))
-    s.constrain(RollingWithoutSlip("grip", "disc", radius, Y))
+    s.constrain(TouchesPlane("floor", "disc", radius, Y))  # type: ignore[arg-type]
+    s.constrain(RollingWithoutSlip("grip", "disc", radius, Y))  # type: ignore[arg-type]
     system = s.build()
     begin = system.initial_state()
     begin.velocity[1] = np.concatenate([axes.T @ -np.cross(spin, arm), axes.T @ spin])
@@ -252,7 +252,7 @@ def free_flight() -> Sequence[Check]:
     spread = 0.1 * random.normal(size=(6, 6))
     size = np.diag(np.sqrt([1e6, 1e6, 1e7, 2e4, 1e4, 1e4]))
     stiffness = size @ (np.eye(6) + spread @ spread.T) @ size
-    inertia = rigid_body(5.0, [0.05, -0.1, 0.0], np.array([0.05, 0.1, 0.1]))
+    inertia = rigid_body(5.0, np.array([0.05, -0.1, 0.0]), np.array([0.05, 0.1, 0.1]))
     beam = discretise(straight(np.zeros(3), np.eye(3), 10.0), 10.0, uniform(stiffness, inertia),
                       np.linspace(0, 1, 11))  # fmt: skip
     s = Structure((0.0, 0.0, 0.0))

@@ -105,12 +105,14 @@ def kept_lift(forces: WaveForces) -> float:
     return float((forces.lift @ wave) / (forces.sections @ wave))
 
 
-def responses(wavelengths: Array = WAVELENGTHS, **inflow: float) -> Array:
+def responses(
+    wavelengths: Array = WAVELENGTHS, angle: float = 0.0, relative_amplitude: float = 0.1
+) -> Array:
     """Share of the lift that the lattice keeps at wavelengths (n,) in chords."""
-    return np.array([kept_lift(wave_forces(w, **inflow)) for w in wavelengths])
+    return np.array([kept_lift(wave_forces(w, angle, relative_amplitude)) for w in wavelengths])
 
 
-def second_order(wavenumber: Array, coefficients: Sequence[float]) -> Array:
+def second_order(wavenumber: Array, coefficients: Sequence[float] | Array) -> Array:
     """Eq. 4.11 with coefficients a, b: a / (k^2 + b k + a)."""
     a, b = coefficients
     return a / (wavenumber**2 + b * wavenumber + a)

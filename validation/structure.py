@@ -156,8 +156,8 @@ def cantilever_elastica() -> Sequence[Check]:
         forces.follower[-1, 4] = turns * np.pi * 1e6 / length
         tip = static_equilibrium(system, loads=forces, steps=4).position[-1] / length
         angle = turns * np.pi
-        exact = ((1 - np.cos(angle)) / angle, np.sin(angle) / angle)
-        for name, value, reference in zip(("x/L", "z/L"), tip[[0, 2]], exact, strict=True):
+        circle = ((1 - np.cos(angle)) / angle, np.sin(angle) / angle)
+        for name, value, reference in zip(("x/L", "z/L"), tip[[0, 2]], circle, strict=True):
             checks.append(Check(f"M = {turns:g} pi EI/L, tip {name}", float(value),
                                 float(reference), "A circle", 1e-3))  # fmt: skip
     return checks

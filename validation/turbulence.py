@@ -54,7 +54,8 @@ class Ensemble:
     @classmethod
     def of(cls, make: Callable[[int], Box], lags: Sequence[tuple[int, int]]) -> Ensemble:
         """From one box per seed; the cross moments are of points ``lags`` steps apart."""
-        moments, cross = [], {lag: [] for lag in lags}
+        moments: list[Array] = []
+        cross: dict[tuple[int, int], list[Array]] = {lag: [] for lag in lags}
         for seed in SEEDS:
             data = make(seed).data
             modes = np.fft.rfft(data, axis=1)[:, :-1] / data.shape[1]
