@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+import tracemalloc
 
 import numpy as np
 import pytest
@@ -211,3 +212,19 @@ def test_csv_has_a_column_for_every_place(tmp_path):
     assert names[:2] == ["time [s]", "rotor_power [W]"]
     assert "normal_force_blade2_radius3 [N/m]" in names
     assert float(first.split(",")[names.index("pitch_blade2 [rad]")]) == pytest.approx(0.02)
+
+
+def test_the_end_of_a_long_run_takes_little_more_memory_than_its_result(tmp_path, monkeypatch):
+    """All rows at once would stand beside it with twice its size, in double precision."""
+    wide = Layout(CHANNELS[2:3], {"blade": np.arange(3.0), "radius": np.arange(50.0)}, {})
+    result = ResultFile(tmp_path / "long.nc", wide)
+    loads = {"normal_force": np.arange(150.0).reshape(3, 50)}
+    for step in range(20000):
+        result.append(0.1 * step, loads)
+    monkeypatch.setattr("galerna.results.log.BLOCK", 1 << 20)
+    monkeypatch.setattr("galerna.results.store.write_netcdf", lambda dataset, path: None)
+    tracemalloc.start()
+    size = result.finish().nbytes
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < size + 4 * 2**20

@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from galerna.contract import Array, Channel
+from galerna.contract import Channel
 from galerna.errors import InputError
-from galerna.results.log import Layout, read_log
+from galerna.results.log import Layout, Records
 
 if TYPE_CHECKING:
     import xarray
@@ -34,9 +34,9 @@ def open_result(path: str | Path) -> xarray.Dataset:
     """
     path = Path(path)
     if path.suffix == ".log" and path.exists():
-        return dataset_of(*read_log(path), "half-written")
+        return _half_written(path)
     if not path.exists() and log_of(path).exists():
-        return dataset_of(*read_log(log_of(path)), "half-written")
+        return _half_written(log_of(path))
     if not path.is_file():
         raise InputError(str(path), "no such result", "galerna run CASE writes one")
     import xarray
@@ -47,32 +47,42 @@ def open_result(path: str | Path) -> xarray.Dataset:
         raise InputError(str(path), f"is not a NetCDF result ({error})") from error
 
 
-def dataset_of(layout: Layout, rows: Array, status: str) -> xarray.Dataset:
-    """The records as labelled arrays; those with dimensions beside time in single precision."""
+def _half_written(log: Path) -> xarray.Dataset:
+    records = Records(log)
+    return dataset_of(records.layout, records, "half-written")
+
+
+def dataset_of(layout: Layout, records: Records, status: str) -> xarray.Dataset:
+    """The records as labelled arrays; those with dimensions beside time in single precision.
+
+    They are read block by block, as those of a long run fill as much memory as the run itself.
+    """
     import xarray
 
-    places = layout.slices()
-    variables = {
-        channel.name: (
-            ("time", *channel.dims),
-            _values(layout, channel, rows[:, places[channel.name]]),
-            _describe(channel),
+    count, places = len(records), layout.slices()
+    time = np.empty(count)
+    values = {
+        channel.name: np.empty(
+            (count, *layout.shape(channel)), np.float32 if channel.dims else np.float64
         )
         for channel in layout.channels
     }
+    for rows, block in records.blocks():
+        time[rows] = block[:, 0]
+        for name, place in places.items():
+            part = values[name][rows]
+            part[...] = block[:, place].reshape(part.shape)
+    variables = {
+        channel.name: (("time", *channel.dims), values[channel.name], _describe(channel))
+        for channel in layout.channels
+    }
     used = {name for channel in layout.channels for name in channel.dims}
-    coordinates = {"time": rows[:, 0], **{n: layout.coordinates[n] for n in sorted(used)}}
+    coordinates = {"time": time, **{n: layout.coordinates[n] for n in sorted(used)}}
     labelled = {
-        name: (name, values, {"units": COORDINATE_UNITS.get(name, "")})
-        for name, values in coordinates.items()
+        name: (name, along, {"units": COORDINATE_UNITS.get(name, "")})
+        for name, along in coordinates.items()
     }
     return xarray.Dataset(variables, labelled, {**layout.attributes, "status": status})
-
-
-def _values(layout: Layout, channel: Channel, columns: Array) -> np.ndarray:
-    if not channel.dims:
-        return columns[:, 0].copy()
-    return columns.reshape(len(columns), *layout.shape(channel)).astype(np.float32)
 
 
 def _describe(channel: Channel) -> dict[str, str | float]:

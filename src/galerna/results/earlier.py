@@ -10,7 +10,7 @@ import numpy as np
 from galerna.contract import Array
 from galerna.errors import InputError
 from galerna.results.dataset import log_of, open_result
-from galerna.results.log import Layout, Log, read_log
+from galerna.results.log import Layout, Log, Records
 
 
 @dataclass(frozen=True)
@@ -23,7 +23,7 @@ class EarlierRecords:
     def require_run(self, run: str) -> None:
         """InputError where the result does not come from the run of this name."""
         log = log_of(self.path)
-        found = read_log(log)[0].attributes if log.exists() else open_result(self.path).attrs
+        found = Records(log).layout.attributes if log.exists() else open_result(self.path).attrs
         if found.get("run") != run:
             what = "this result and its checkpoint come from different runs"
             raise InputError(str(self.path), what, "start again with galerna run")
@@ -43,11 +43,18 @@ class EarlierRecords:
     def _rows(self, layout: Layout) -> Array:
         """Rows (records, width) as they stand in a log."""
         log = log_of(self.path)
-        rows = read_log(log)[1] if log.exists() else self._finished_rows(layout)
-        if len(rows) < self.records:
-            what = f"holds {len(rows)} records, the checkpoint was written after {self.records}"
-            raise InputError(str(self.path), what, "start again with galerna run")
+        if log.exists():
+            written = Records(log)
+            self._require(len(written))
+            return written.first(self.records)
+        rows = self._finished_rows(layout)
+        self._require(len(rows))
         return rows[: self.records]
+
+    def _require(self, found: int) -> None:
+        if found < self.records:
+            what = f"holds {found} records, the checkpoint was written after {self.records}"
+            raise InputError(str(self.path), what, "start again with galerna run")
 
     def _finished_rows(self, layout: Layout) -> Array:
         dataset = open_result(self.path)

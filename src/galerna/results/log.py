@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass
 from io import FileIO
 from itertools import pairwise
@@ -23,6 +23,7 @@ from galerna.errors import ConvergenceError, InputError
 
 MAGIC = b"galerna log 1\n"
 LONGEST_HEADER = 64 * 1024 * 1024
+BLOCK = 4 * 1024 * 1024  #: bytes that are read at a time
 
 
 @dataclass(frozen=True, eq=False)
@@ -155,16 +156,40 @@ def _claim(file: FileIO, path: Path) -> None:
         return
 
 
-def read_log(path: Path) -> tuple[Layout, Array]:
-    """Layout and rows (n, width) of a log; a record cut short at the end is left out.
+class Records:
+    """The records of a log on disk, read as they are wanted; one cut short at the end is left out.
 
     Raises InputError if the file is not a log.
     """
-    with path.open("rb") as file:
-        layout = _read_layout(file, path)
-        values = np.fromfile(file, dtype="<f8")
-    complete = len(values) // layout.width
-    return layout, values[: complete * layout.width].reshape(complete, layout.width)
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        with path.open("rb") as file:
+            self.layout = _read_layout(file, path)
+            self._start = file.tell()
+        size = path.stat().st_size - self._start
+        self._count = size // (8 * self.layout.width)
+
+    def __len__(self) -> int:
+        return self._count
+
+    def blocks(self) -> Iterator[tuple[slice, Array]]:
+        """Rows (n, width) in turn, a few megabytes each, and which of all they are."""
+        width = self.layout.width
+        many = max(1, BLOCK // (8 * width))
+        with self.path.open("rb") as file:
+            file.seek(self._start)
+            for first in range(0, self._count, many):
+                rows = slice(first, min(first + many, self._count))
+                values = np.fromfile(file, dtype="<f8", count=(rows.stop - first) * width)
+                yield rows, values.reshape(-1, width)
+
+    def first(self, count: int) -> Array:
+        """The first ``count`` rows (count, width)."""
+        with self.path.open("rb") as file:
+            file.seek(self._start)
+            values = np.fromfile(file, dtype="<f8", count=count * self.layout.width)
+        return values.reshape(count, self.layout.width)
 
 
 def _end_of(path: Path, records: int) -> int:

@@ -11,7 +11,7 @@ from galerna.contract import Array
 from galerna.errors import InputError
 from galerna.results.dataset import checkpoint_of, dataset_of, log_of
 from galerna.results.earlier import EarlierRecords
-from galerna.results.log import Layout, Log, read_log
+from galerna.results.log import Layout, Log, Records
 
 if TYPE_CHECKING:
     import xarray
@@ -58,8 +58,7 @@ class ResultFile:
 
         Raises InputError if the file cannot be written; the log stays then.
         """
-        _, rows = read_log(self._log.path)
-        dataset = dataset_of(self._layout, rows, status)
+        dataset = dataset_of(self._layout, Records(self._log.path), status)
         write_netcdf(dataset, self.path)
         self._log.close()  # not before: it keeps other runs out
         self._log.path.unlink()
