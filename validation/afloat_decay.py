@@ -36,7 +36,7 @@ SUMMARY = "ElastoDyn's summary of NREL's certification test 24, FAST v8"
 
 @cache
 def decay(name: str, lower: float = 0.0) -> xarray.Dataset:
-    """A free decay by galerna, started ``lower`` m than OpenFAST's."""
+    """A free decay by galerna, started ``lower`` m below OpenFAST's."""
     reference, rest = openfast_decay(FILES[name]), at_rest()
     start = {
         f"{motion}_{UNITS[motion]}": float(reference[motion][0] - rest[motion]) for motion in UNITS
