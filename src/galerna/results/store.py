@@ -16,6 +16,9 @@ from galerna.results.log import Layout, Log, Records
 if TYPE_CHECKING:
     import xarray
 
+#: bytes of each variable that HDF5 holds until a file is closed; its own 16 MB double the result
+CHUNK_CACHE = 1 << 20
+
 
 class ResultFile:
     """The result of one run on disk: append records, then ``finish``.
@@ -80,6 +83,9 @@ def check_free(path: Path, overwrite: bool) -> None:
 
 def write_netcdf(dataset: xarray.Dataset, path: Path) -> None:
     """Write a NetCDF file, complete or not at all; InputError if the disk does not take it."""
+    import netCDF4
+
+    netCDF4.set_chunk_cache(CHUNK_CACHE)
     encoding = {name: {"zlib": True, "complevel": 1} for name in dataset.data_vars}
     unfinished = path.with_name(path.name + ".unfinished")
     try:
