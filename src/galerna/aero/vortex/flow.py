@@ -80,25 +80,39 @@ def bound_flow(
     """The flow with a wake that is known."""
     circulation = system.solve(_needed_velocity(surfaces, wind + wake_velocity))
     if separation is not None:
-        circulation = separation.correct(surfaces, wind, circulation, system.solve)
+        response = separation.response(system.solve, surfaces)
+        circulation = separation.correct(surfaces, wind, circulation, response)
     return Flow(split_panels(circulation, surfaces), wind, wake_velocity)
 
 
 class EdgeInfluence(NamedTuple):
-    """Normal velocities by the first panels of wakes, as `EdgePanels.normal_velocity` has them."""
+    """Normal velocities by the first panels of wakes, as `EdgePanels.normal_velocity` has them.
+
+    ``shares`` are None where nothing of the circulation sought is in the panels; ``response`` is
+    that of the `Separation`, if there is one, with the shares in it.
+    """
 
     known: Array
-    shares: Array
+    shares: Array | None
+    response: Array | None
 
 
 def edge_influence(
-    surfaces: Sequence[Surface], edges: Sequence[EdgePanels], mirror: MirrorPlane | None
+    system: BoundSystem,
+    surfaces: Sequence[Surface],
+    edges: Sequence[EdgePanels],
+    mirror: MirrorPlane | None,
+    separation: Separation | None = None,
 ) -> EdgeInfluence:
     """What the first panels of all wakes do at the collocation points: (N,) m/s and (N,n) 1/m."""
     points, normals = collocation_points(surfaces), collocation_normals(surfaces)
     pairs = [e.normal_velocity(points, normals, mirror) for e in edges]
     known = np.sum([known for known, _ in pairs], axis=0)
-    return EdgeInfluence(known, np.hstack([share for _, share in pairs]))
+    strips = np.hstack([share for _, share in pairs])
+    shares, response = strips if strips.any() else None, None
+    if separation is not None:
+        response = separation.response(partial(system.solve, strips=shares), surfaces)
+    return EdgeInfluence(known, shares, response)
 
 
 def edge_flow(
@@ -112,11 +126,10 @@ def edge_flow(
 ) -> Flow:
     """The flow with a wake whose first panels depend on the circulation sought."""
     needed = _needed_velocity(surfaces, wind + far_velocity) - influence.known
-    shares = influence.shares
-    solve = partial(system.solve, strips=shares if shares.any() else None)
-    solved = solve(needed)
+    solved = system.solve(needed, influence.shares)
     if separation is not None:
-        solved = separation.correct(surfaces, wind, solved, solve)
+        assert influence.response is not None, "edge_influence takes the separation too"
+        solved = separation.correct(surfaces, wind, solved, influence.response)
     circulation = split_panels(solved, surfaces)
     near = [e.sheet(g[-1]) for e, g in zip(edges, circulation, strict=True)]
     return Flow(circulation, wind, far_velocity, near)
@@ -138,7 +151,8 @@ def strip_flow(
     solve = partial(system.solve, strips=normal_strips)
     circulation = solve(_needed_velocity(surfaces, wind))
     if separation is not None:
-        circulation = separation.correct(surfaces, wind, circulation, solve)
+        response = separation.response(solve, surfaces)
+        circulation = separation.correct(surfaces, wind, circulation, response)
     wake_velocity = np.einsum("pni,n->pi", strips, circulation[system.trailing_rings])
     return Flow(split_panels(circulation, surfaces), wind, wake_velocity)
 

@@ -29,17 +29,20 @@ class Separation:
         self.found: Decambered | None = None
         self._accepted: Array | None = None
 
+    def response(self, solve: Solve, surfaces: Sequence[Surface]) -> Array:
+        """Circulations (N,n) m of a wash of 1 m/s; see `Decambering.response`."""
+        return self.decambering.response(solve, surfaces)
+
     def correct(
-        self, surfaces: Sequence[Surface], wind: Array, circulation: Array, solve: Solve
+        self, surfaces: Sequence[Surface], wind: Array, circulation: Array, response: Array
     ) -> Array:
         """Circulations (N,) m2/s in place of those of potential flow.
 
         ``wind`` (P,3) m/s begins with that at the N collocation points; along the chord the
-        undisturbed velocity counts, as it does for drag. ``solve`` is that of
-        `Decambering.response`. Raises ConvergenceError that names the strip.
+        undisturbed velocity counts, as it does for drag. ``response`` is the lattice's.
+        Raises ConvergenceError that names the strip.
         """
         moving = collocation_velocities(surfaces)
-        response = self.decambering.response(solve, surfaces)
         relative = wind[: len(moving)] - moving
         self.found = self.decambering.solve(
             surfaces, circulation, relative, response, self._accepted

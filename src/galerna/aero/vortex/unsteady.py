@@ -318,7 +318,7 @@ class UnsteadyLattice:
         if influences is None:
             influences = _Influences(
                 self._far_wake(trial.wake).velocity(surfaces),
-                edge_influence(surfaces, edges, options.mirror),
+                edge_influence(self.system, surfaces, edges, options.mirror, self.separation),
             )
         if options.hold_influences:
             trial.held = influences
