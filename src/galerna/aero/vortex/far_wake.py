@@ -9,7 +9,6 @@ from collections.abc import Sequence
 from itertools import groupby
 
 import numpy as np
-from numpy.typing import NDArray
 
 from galerna.aero.vortex.chordwise import AlongChords, ChordPoints, MakeField
 from galerna.aero.vortex.cores import VortexCore
@@ -35,7 +34,7 @@ class FarWake:
     def velocity(self, surfaces: Sequence[Surface]) -> Array:
         """Velocity (P,3) m/s at the ``control_points`` of the surfaces."""
         targets = [ChordPoints(s, collocated=True) for s in surfaces]
-        sheets = self._sheets(self._near_rows(targets))
+        sheets = self._sheets(targets)
         sums = AlongChords(targets, sheets, self._make_field, self._smooth)
         found = sums.velocity(targets, sheets, near="mixed")
         counts = [s.shape[0] * s.shape[1] for s in surfaces]
@@ -43,13 +42,11 @@ class FarWake:
         segments = [u[count:] for u, count in zip(found, counts, strict=True)]
         return np.concatenate([*collocation, *segments])
 
-    def _near_rows(self, targets: Sequence[ChordPoints]) -> NDArray[np.bool_]:
-        """Whether panels 1, 2, ... of the wakes come near a surface (K-1,)."""
-        near = [t.near_rows(x[1:]) for t in targets for x in self._wake.vertices]
-        return np.any(near, axis=0)
-
-    def _sheets(self, near: NDArray[np.bool_]) -> list[Sheet]:
-        """Panels 1, 2, ... in runs of those that are near and of those that are not."""
+    def _sheets(self, targets: Sequence[ChordPoints]) -> list[Sheet]:
+        """Panels 1, 2, ...; if interpolated, in runs of those near a surface and of others."""
+        if not self._smooth:
+            return self._wake.sheets(self._core, rows=slice(1, None))
+        near = np.any([t.near_rows(x[1:]) for t in targets for x in self._wake.vertices], axis=0)
         sheets: list[Sheet] = []
         for _, run in groupby(range(len(near)), key=lambda k: bool(near[k])):
             rows = list(run)
