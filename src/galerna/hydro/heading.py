@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from math import atan2, cos, exp, floor, hypot, nan, pi, sin
+from math import atan2, cos, exp, floor, hypot, isnan, nan, pi, sin
 from typing import Generic, TypeVar
 
 import numpy as np
@@ -17,6 +17,18 @@ LEAN_CUT_OFF = 0.001  #: Hz: of a pitch of 0.03 Hz 3 % pass
 BIN = pi / 36.0  #: rad: a cosine between two such is off by 0.1 % of its size at most
 
 T = TypeVar("T")
+
+
+def share_of_step(cut_off: float, dt: float) -> float:
+    """What a low pass of first order with a cut-off in Hz takes of a change in ``dt`` s."""
+    return 1.0 - exp(-2.0 * pi * cut_off * dt)
+
+
+def require_cut_off(where: str, cut_off: float, what: str) -> float:
+    """The cut-off in Hz; InputError if it is negative."""
+    if cut_off < 0.0:
+        raise InputError(where, f"cut-off of {cut_off:g} Hz: the mean {what} needs one from 0 on")
+    return cut_off
 
 
 def yaw_of(rotation: Array) -> float:
@@ -37,15 +49,13 @@ class MeanHeading:
     """
 
     def __init__(self, cut_off: float = CUT_OFF, fixed: float | None = None) -> None:
-        if cut_off < 0.0:
-            what = f"cut-off of {cut_off:g} Hz: the mean yaw needs one from 0 on"
-            raise InputError("heading_cut_off_hz", what)
-        self.cut_off, self.fixed = cut_off, fixed
+        self.cut_off = require_cut_off("heading_cut_off_hz", cut_off, "yaw")
+        self.fixed = fixed
         self._angle = nan if fixed is None else fixed
 
     def over_step(self, rotation: Array) -> float:
         """Heading rad of a step that begins with a rotation (3,3)."""
-        return self._angle if self._angle == self._angle else yaw_of(rotation)
+        return yaw_of(rotation) if isnan(self._angle) else self._angle
 
     def settled(self, rotation: Array) -> float:
         """Heading rad of a platform that rests with a rotation (3,3)."""
@@ -54,8 +64,8 @@ class MeanHeading:
     def commit(self, dt: float, before: float, rotation: Array) -> None:
         """Follow from ``before`` to the rotation (3,3) at the end of a step."""
         if self.fixed is None:
-            share = 1.0 - exp(-2.0 * pi * self.cut_off * dt)
-            self._angle = before + share * nearest_turn(yaw_of(rotation) - before)
+            change = nearest_turn(yaw_of(rotation) - before)
+            self._angle = before + share_of_step(self.cut_off, dt) * change
 
     def state(self) -> dict[str, np.ndarray]:
         """The mean yaw."""
@@ -102,15 +112,13 @@ class MeanLean:
     """
 
     def __init__(self, cut_off: float = LEAN_CUT_OFF, upright: bool = False) -> None:
-        if cut_off < 0.0:
-            what = f"cut-off of {cut_off:g} Hz: the mean lean needs one from 0 on"
-            raise InputError("lean_cut_off_hz", what)
-        self.cut_off, self.upright = cut_off, upright
+        self.cut_off = require_cut_off("lean_cut_off_hz", cut_off, "lean")
+        self.upright = upright
         self._lean = np.full(3, 0.0 if upright else nan)
 
     def over_step(self, rotation: Array) -> Array:
         """Lean (3,) of a step that begins with a rotation (3,3)."""
-        return self._lean if self._lean[2] == 0.0 else lean_of(rotation)
+        return lean_of(rotation) if isnan(self._lean[2]) else self._lean
 
     def settle(self, rotation: Array) -> None:
         """Begin at the lean of a platform that rests with a rotation (3,3)."""
@@ -120,8 +128,7 @@ class MeanLean:
     def commit(self, dt: float, before: Array, rotation: Array) -> None:
         """Follow from ``before`` to the rotation (3,3) at the end of a step."""
         if not self.upright:
-            share = 1.0 - exp(-2.0 * pi * self.cut_off * dt)
-            self._lean = before + share * (lean_of(rotation) - before)
+            self._lean = before + share_of_step(self.cut_off, dt) * (lean_of(rotation) - before)
 
     def state(self) -> dict[str, np.ndarray]:
         """The mean lean."""
