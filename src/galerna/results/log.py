@@ -87,7 +87,7 @@ class Log:
         self._file = _opened(path)
         _claim(self._file, path)
         if keep is not None:
-            self._file.truncate(_end_of(path, keep))
+            self._file.truncate(Records(path).end_of(keep))
             return
         self._file.truncate(0)
         self._write(MAGIC + layout.to_json().encode() + b"\n")
@@ -167,8 +167,7 @@ class Records:
         with path.open("rb") as file:
             self.layout = _read_layout(file, path)
             self._start = file.tell()
-        size = path.stat().st_size - self._start
-        self._count = size // (8 * self.layout.width)
+        self._count = (path.stat().st_size - self._start) // (8 * self.layout.width)
 
     def __len__(self) -> int:
         return self._count
@@ -184,22 +183,18 @@ class Records:
                 values = np.fromfile(file, dtype="<f8", count=(rows.stop - first) * width)
                 yield rows, values.reshape(-1, width)
 
+    def end_of(self, count: int) -> int:
+        """Where the first ``count`` end, in bytes; InputError if the log holds less."""
+        if count > len(self):
+            raise InputError(str(self.path), f"holds less than the {count} records that it had")
+        return self._start + 8 * self.layout.width * count
+
     def first(self, count: int) -> Array:
         """The first ``count`` rows (count, width)."""
         with self.path.open("rb") as file:
             file.seek(self._start)
             values = np.fromfile(file, dtype="<f8", count=count * self.layout.width)
         return values.reshape(count, self.layout.width)
-
-
-def _end_of(path: Path, records: int) -> int:
-    """Where so many records of a log end, in bytes; InputError if it holds less."""
-    with path.open("rb") as file:
-        layout = _read_layout(file, path)
-        end = file.tell() + 8 * layout.width * records
-    if path.stat().st_size < end:
-        raise InputError(str(path), f"holds less than the {records} records that it had")
-    return end
 
 
 def _read_layout(file: BinaryIO, path: Path) -> Layout:
