@@ -13,12 +13,12 @@ from galerna.contract import Array, Loads
 from galerna.coupling.flexible import FlexibleMachine
 from galerna.coupling.floating import ARM, mass_center
 from galerna.hydro.database import Complex, HydroDatabase
-from galerna.hydro.rigid import MODES as DIRECTIONS
+from galerna.hydro.rigid import MODES
 from galerna.structure.modes import Modes, linearise, natural_modes
 from galerna.structure.system import Forces, State
 
 PASSES = 3  #: of a frequency and the coefficients at it
-FIRST, MODES = 14, 6  #: modes that are computed: from the lowest on, and about a frequency
+FIRST, NEAREST = 14, 6  #: modes that are computed: from the lowest on, and about a frequency
 LOW = 0.2  #: rad/s, of the coefficients with which modes are looked for
 MOVED = 0.02  #: of a mode's largest motion: less of the platform's is another part's mode
 SLOWEST = 1e-4  #: Hz: slower is a rotor that turns freely
@@ -58,7 +58,7 @@ def floating_modes(
         frequency, ratio, shape = modes.frequency[k], modes.damping_ratio[k], shown
         for _ in range(PASSES):
             forces = _at(base, node, database, 2.0 * np.pi * frequency, turned)
-            near = natural_modes(machine.system, state, MODES, forces, about_hz=frequency)
+            near = natural_modes(machine.system, state, NEAREST, forces, about_hz=frequency)
             alike = [abs(np.vdot(_motion(one, node, center), shape)) for one in near.shape]
             best = int(np.argmax(alike))
             shape = _motion(near.shape[best], node, center)
@@ -105,10 +105,10 @@ def _named(modes: Modes, node: int, center: Array) -> Iterator[tuple[int, tuple[
             np.abs(modes.shape[k] / ARM).max()
         ):
             found.append((k, _motion(modes.shape[k], node, center)))
-    found = found[: len(DIRECTIONS)]
-    likeness = np.array([np.abs(shape) for _, shape in found]).reshape(-1, len(DIRECTIONS))
+    found = found[: len(MODES)]
+    likeness = np.array([np.abs(shape) for _, shape in found]).reshape(-1, len(MODES))
     for row, column in zip(*linear_sum_assignment(-likeness), strict=True):
-        yield found[row][0], (DIRECTIONS[column], found[row][1])
+        yield found[row][0], (MODES[column], found[row][1])
 
 
 def _motion(shape: Array, node: int, center: Array) -> Complex:
