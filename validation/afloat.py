@@ -11,6 +11,10 @@ import xarray
 import galerna
 from galerna.case import load
 from galerna.contract import Array
+from galerna.coupling.afloat import Afloat, Floating
+from galerna.coupling.flexible import FlexibleMachine
+from galerna.coupling.floating_modes import response
+from galerna.hydro.database import Complex
 from galerna.machine import Machine, build_machine
 
 from .rotors import table
@@ -31,7 +35,12 @@ PARKED: dict[str, Any] = {"rotor_speed_rpm": 0.0, "pitch_deg": 0.0}
 
 def parked(duration: float, sea: Any, **blocks: Any) -> xarray.Dataset:
     """The OC3 spar with its rotor held and no air, in a sea for ``duration`` s."""
-    case = {
+    return galerna.run(parked_case(duration, sea, **blocks))
+
+
+def parked_case(duration: float, sea: Any, **blocks: Any) -> dict[str, Any]:
+    """The case of ``parked``."""
+    return {
         "galerna": 1,
         "turbine": "nrel5mw_oc3",
         "duration_s": duration,
@@ -43,24 +52,53 @@ def parked(duration: float, sea: Any, **blocks: Any) -> xarray.Dataset:
         "sea": sea,
         **blocks,
     }
-    return galerna.run(case)
 
 
 @cache
 def still_machine(structure: str) -> Machine:
     """The machine of ``parked`` at rest."""
-    case = {
-        "galerna": 1,
-        "turbine": "nrel5mw_oc3",
-        "duration_s": 1.0,
-        "inflow": {"wind_speed_m_s": 1.0},
-        "air_density_kg_m3": NO_AIR,
-        "tower_and_nacelle_drag": False,
-        "structure": structure,
-        "operation": PARKED,
-        "sea": {"drag": False},
-    }
-    return build_machine(load(case))
+    return build_machine(load(parked_case(1.0, {"drag": False}, structure=structure)))
+
+
+def afloat_of(machine: Machine) -> Afloat:
+    """The water of a machine that has some."""
+    assert machine.afloat is not None
+    return machine.afloat
+
+
+def floating_of(machine: Machine) -> Floating:
+    """The platform of a machine that floats."""
+    floating = afloat_of(machine).floating
+    assert floating is not None
+    return floating
+
+
+class LinearMachine:
+    """The machine of ``parked`` about its rest, in the frequency domain."""
+
+    def __init__(self, structure: str) -> None:
+        machine = still_machine(structure)
+        moving = machine.simulation.structure
+        assert isinstance(moving, FlexibleMachine)
+        self.moving, self.database = moving, afloat_of(machine).database
+        models = machine.simulation.load_models.values()
+        self._loads = [
+            model.loads(0.0, at) for model, at in zip(models, moving.motions, strict=True)
+        ]
+        self.platform = int(moving.parts.parts["platform"][0])
+        self.top = moving.system.names.index("nacelle")
+
+    def answer(self, frequency: float, force: Complex) -> Complex:
+        """Motion (n,6) of all frames for Re[force exp(i w t)] (6,) on the platform, rad/s."""
+        return response(
+            self.moving, self.moving.accepted, self._loads, self.database, frequency, force
+        )
+
+
+@cache
+def linear_machine(structure: str) -> LinearMachine:
+    """That machine, once."""
+    return LinearMachine(structure)
 
 
 def motion(result: xarray.Dataset, name: str) -> Array:

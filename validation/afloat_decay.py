@@ -8,13 +8,20 @@ from functools import cache, partial
 import numpy as np
 import xarray
 
-from galerna.coupling.build import turbine_options
-from galerna.coupling.floating_modes import response
-from galerna.coupling.floating_report import modes_of
 from galerna.turbine.summary import point_masses
 from galerna.units import STANDARD_GRAVITY
 
-from .afloat import UNITS, likeness, motion, openfast_decay, parked, still_machine, swing
+from .afloat import (
+    UNITS,
+    floating_of,
+    likeness,
+    linear_machine,
+    motion,
+    openfast_decay,
+    parked,
+    still_machine,
+    swing,
+)
 from .framework import Case, Check
 
 OPENFAST = "OpenFAST v5.0.0, rigid, WAMIT radiation by convolution, MAP++ lines"
@@ -110,7 +117,7 @@ def lumped_blade_mass() -> float:
 def depth_of_lumping() -> float:
     """How much lower, m, the machine floats than with the blades that ElastoDyn has."""
     machine = still_machine("rigid")
-    floating, turbine = machine.afloat.floating, machine.turbine
+    floating, turbine = floating_of(machine), machine.turbine
     assert turbine.blade.structure is not None
     whole = point_masses(turbine.blade.axis_span, turbine.blade.axis, turbine.blade.structure)[0]
     heavier = turbine.number_of_blades * (float(whole.sum()) - lumped_blade_mass())
@@ -128,14 +135,7 @@ TOWER = (0.43, 0.50)  #: Hz, the scatter of these codes for the first fore-aft b
 def frequencies() -> Iterator[Check]:
     """Natural frequencies of the flexible machine at rest, and of its tower."""
     for structure in ("rigid", "flexible"):
-        machine = still_machine(structure)
-        afloat, floating = machine.afloat, machine.afloat.floating
-        options = turbine_options(machine.case, machine.turbine, machine.operation, afloat)
-        found = modes_of(
-            machine.turbine, options, floating.water, floating.burden, floating.settled,
-            afloat.database,
-        )  # fmt: skip
-        for mode in found:
+        for mode in still_machine(structure).floating_modes():
             if mode.name in FREQUENCIES:
                 yield Check(
                     f"{mode.name}, {structure} machine", mode.frequency, FREQUENCIES[mode.name],
@@ -152,22 +152,10 @@ def frequencies() -> Iterator[Check]:
 
 def tower_frequency() -> float:
     """Hz, of the peak of the tower top's linear response to a force on the platform."""
-    machine = still_machine("flexible")
-    flexible, models = machine.simulation.structure, machine.simulation.load_models
-    loads = [
-        model.loads(0.0, at) for model, at in zip(models.values(), flexible.motions, strict=True)
-    ]
+    machine = linear_machine("flexible")
     push = np.array([0.0, 0, 0, 0, 1e6, 0], dtype=complex)
-    node = flexible.system.names.index("nacelle")
     grid = np.arange(0.40, 0.56, 0.002)
-    size = [
-        abs(
-            response(
-                flexible, flexible.accepted, loads, machine.afloat.database, 2 * np.pi * hz, push
-            )[node, 0]
-        )
-        for hz in grid
-    ]
+    size = [abs(machine.answer(2 * np.pi * hz, push)[machine.top, 0]) for hz in grid]
     return float(grid[int(np.argmax(size))])
 
 

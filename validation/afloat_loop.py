@@ -21,7 +21,6 @@ from scipy.signal import welch
 
 from galerna.contract import Array
 from galerna.control.pitch import PitchGains
-from galerna.coupling.floating_modes import response
 from galerna.coupling.gains import drive_inertia
 from galerna.coupling.steady import FlexibleRotor, steady_flexible
 from galerna.hydro.waves.spectra import default_peak_enhancement, jonswap
@@ -30,7 +29,7 @@ from galerna.turbine import load
 from galerna.turbine.model import Turbine
 from galerna.units import DEG, RPM, SEA_WATER, STANDARD_GRAVITY
 
-from .afloat import still_machine
+from .afloat import linear_machine
 from .afloat_gains import TURBINE, schedule
 from .afloat_operation import BOX, INTENSITY, SEA, WIND
 
@@ -76,24 +75,17 @@ def derivatives() -> Array:
 @cache
 def platform() -> tuple[Complex, Complex]:
     """Surge m and pitch rad (f,2) of the spar for 1 N at the hub, and for 1 m of wave."""
-    simulation = still_machine("rigid").simulation
-    machine, models = simulation.structure, simulation.load_models
-    loads = [
-        model.loads(0.0, at) for model, at in zip(models.values(), machine.motions, strict=True)
-    ]
-    database = models["hydrodynamics"].database
-    node = int(machine.parts.parts["platform"][0])
+    machine = linear_machine("rigid")
 
-    def moved(frequency: float, excitation: Complex) -> Complex:
-        all_of_them = response(machine, machine.accepted, loads, database, frequency, excitation)
-        return all_of_them[node, IN_PLANE]
+    def moved(frequency: float, force: Complex) -> Complex:
+        return machine.answer(frequency, force)[machine.platform, IN_PLANE]
 
     thrust, wave, damping = [], [], drag()
     for w in S.imag:
         compliance = np.stack([moved(w, one + 0j) for one in np.eye(6)[IN_PLANE]], axis=1)
         with_drag = np.linalg.inv(np.linalg.inv(compliance) + 1j * w * damping)
         thrust.append(with_drag @ [1.0, turbine().hub_height])
-        calm = moved(w, database.excitation_at([w], 0.0)[0])
+        calm = moved(w, machine.database.excitation_at([w], 0.0)[0])
         wave.append(with_drag @ np.linalg.solve(compliance, calm))
     return np.array(thrust), np.array(wave)
 

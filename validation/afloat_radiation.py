@@ -9,8 +9,6 @@ import numpy as np
 
 from galerna.case import load
 from galerna.contract import Array, Motion
-from galerna.coupling.build import turbine_options
-from galerna.coupling.floating_report import modes_of
 from galerna.hydro.database import HydroDatabase
 from galerna.hydro.heading import lean_of
 from galerna.hydro.platform_options import PlatformOptions
@@ -21,6 +19,7 @@ from galerna.machine import build_machine
 from galerna.structure.frames import exp_so3
 from galerna.turbine.platform import Platform
 
+from .afloat import floating_of
 from .afloat_database import WAMIT, shipped
 from .framework import Case, Check
 from .rotors import table
@@ -200,17 +199,8 @@ def leaning() -> Iterator[Check]:
             here = build_machine(load(WORKING | {
                 "inflow": {"wind_speed_m_s": wind}, "platform": {"added_mass_axes": axes},
             }))  # fmt: skip
-            afloat = here.afloat
-            assert afloat is not None
-            assert afloat.floating is not None
-            assert afloat.floating.burden is not None
-            pose = afloat.floating.settled
-            options = turbine_options(here.case, here.turbine, here.operation, afloat)
-            modes = modes_of(
-                here.turbine, options, afloat.floating.water, afloat.floating.burden, pose,
-                afloat.database,
-            )  # fmt: skip
-            yaw = next(mode.frequency for mode in modes if mode.name == "yaw")
+            yaw = next(mode.frequency for mode in here.floating_modes() if mode.name == "yaw")
+            pose = floating_of(here).settled
             lean = float(np.rad2deg(np.linalg.norm(lean_of(pose.rotation))))
             text = f"yaw at {wind:g} m/s, a lean of {lean:.1f} deg, {axes.replace('_', ' ')}"
             yield Check(text, yaw, 0.121, UPRIGHT, tolerance, "Hz", True)

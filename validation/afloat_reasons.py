@@ -93,9 +93,9 @@ def readings() -> Iterator[Check]:
     own = 14.6 / (REDESIGN[0] / (RAISED[0] * SCHEDULED) - 1.0)
     yield Check(f"angle over which the redesign's sensitivity doubles, were its factor {RAISED[0]}",
                 own, DOUBLED, "NREL/TP-500-38060, section 7", None, "deg")  # fmt: skip
-    short = [operated(name, "BEM, short") for name in ("reference", "raised")]
+    before, after = (operated(name, "BEM, short") for name in ("reference", "raised"))
     text = f"gains raised to {RAISED[0]:g} of the reference's, 150 s"
-    yield from changes(text, *short, FROM_REFERENCE_TO_REDESIGN)
+    yield from changes(text, before, after, FROM_REFERENCE_TO_REDESIGN)
 
 
 def sample() -> Iterator[Check]:
@@ -116,8 +116,8 @@ def sample() -> Iterator[Check]:
     slow = WIND + float(next(windows(wind(SLOW), (0.0,))).mean())
     yield Check(f"mean wind over the rotor, first 150 s of the box of seed {SLOW}", slow, WIND,
                 FLOATING, None, "m/s")  # fmt: skip
-    runs = [in_slow_wind(name) for name in ("open loop", "reference")]
-    yield from changes("from open loop to reference in these", *runs, FROM_OPEN_TO_CLOSED)
+    before, after = (in_slow_wind(name) for name in ("open loop", "reference"))
+    yield from changes("from open loop to reference in these", before, after, FROM_OPEN_TO_CLOSED)
 
 
 def windows(values: Array, starts: Iterable[float]) -> Iterator[Array]:

@@ -11,10 +11,8 @@ import xarray
 from scipy.signal import csd, welch
 
 from galerna.contract import Array
-from galerna.coupling.floating_modes import response
-from galerna.hydro.database import HydroDatabase
 
-from .afloat import MOTIONS, UNITS, harmonic, motion, parked, still_machine
+from .afloat import MOTIONS, UNITS, harmonic, linear_machine, motion, parked
 from .framework import Case, Check
 
 LINEAR = "linear response of the same machine in the frequency domain, from its database"
@@ -29,31 +27,16 @@ SEGMENT = 400.0  #: s of a spectrum's windows
 IN_PLANE = ("surge", "heave", "pitch")
 
 
-def database() -> HydroDatabase:
-    """The coefficients of that machine."""
-    return still_machine("rigid").simulation.load_models["hydrodynamics"].database
-
-
 @cache
 def linear_response(frequency: float, structure: str = "rigid") -> dict[str, complex]:
     """Amplitudes m, deg of the platform's motions and of the tower's top (m) for 1 m of wave."""
-    machine, simulation = still_machine(structure), still_machine(structure).simulation
-    flexible = simulation.structure
-    loads = [
-        model.loads(0.0, at)
-        for model, at in zip(simulation.load_models.values(), flexible.motions, strict=True)
-    ]
-    excitation = machine.simulation.load_models["hydrodynamics"].database.excitation_at(
-        [frequency], 0.0
-    )[0]
-    moved = response(
-        flexible, flexible.accepted, loads, database(), frequency, excitation
-    )  # fmt: skip
-    node = int(flexible.parts.parts["platform"][0])
+    machine = linear_machine(structure)
+    moved = machine.answer(frequency, machine.database.excitation_at([frequency], 0.0)[0])
+    node, top = machine.platform, machine.top
     scales = [scale for _, scale in MOTIONS.values()]
     found = dict(zip(MOTIONS, moved[node] * scales, strict=True))
-    top = flexible.system.names.index("nacelle")
-    lever = flexible.accepted.position[top, 2] - flexible.accepted.position[node, 2]
+    height = machine.moving.accepted.position[:, 2]
+    lever = height[top] - height[node]
     found["tower top"] = moved[top, 0] - moved[node, 0] - lever * moved[node, 4]
     return found
 

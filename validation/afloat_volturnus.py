@@ -12,7 +12,6 @@ import xarray
 
 import galerna
 from galerna.case import load
-from galerna.coupling.afloat import Floating
 from galerna.coupling.build import turbine_options
 from galerna.coupling.floating import WaterAtRest
 from galerna.coupling.floating_report import modes_of
@@ -22,7 +21,7 @@ from galerna.machine import Machine, build_machine
 from galerna.turbine import Turbine
 from galerna.turbine.summary import summary
 
-from .afloat import NO_AIR, PARKED, motion, swing
+from .afloat import NO_AIR, PARKED, afloat_of, floating_of, motion, swing
 from .framework import Case, Check
 
 REPORT = "Allen et al., NREL/TP-5000-76773 (2020), as commonly quoted; not checked against it"
@@ -69,11 +68,8 @@ def machine() -> Machine:
 def at_rest() -> Iterator[Check]:
     """Balance, line tension and natural frequencies in still water."""
     here = machine()
-    report, afloat = here.report, here.afloat
+    report, floating = here.report, floating_of(here)
     assert report is not None
-    assert afloat is not None
-    floating = afloat.floating
-    assert floating is not None
     assert floating.burden is not None
     weight = floating.burden.mass * 9.80665
     upward = sum(float(load.force[:, 2].sum()) for load in report.loads_at_place())
@@ -90,11 +86,7 @@ def at_rest() -> Iterator[Check]:
         here.simulation.advance()
         tension = np.asarray(here.simulation.record()["fairlead_tension"])
     yield Check("tension at a fairlead", tension.mean() / 1e3, PRETENSION, REPORT, 0.02, "kN", True)
-    options = turbine_options(here.case, here.turbine, here.operation, afloat)
-    modes = modes_of(
-        here.turbine, options, floating.water, floating.burden, floating.settled, afloat.database
-    )
-    for mode in sorted(modes, key=lambda mode: mode.frequency):
+    for mode in sorted(here.floating_modes(), key=lambda mode: mode.frequency):
         yield Check(
             f"natural frequency, {mode.name}", mode.frequency, FREQUENCIES[mode.name], REPORT,
             FREQUENCY_TOLERANCE[mode.name], "Hz", True,
@@ -104,7 +96,7 @@ def at_rest() -> Iterator[Check]:
 def budget() -> Iterator[Check]:
     """What the natural frequency in pitch owes to tower, masses and hull, one after the other."""
     light, heavy = machine().turbine, heavier(machine().turbine)
-    own, panels = resting().water, water_about(deck_database())
+    own, panels = floating_of(machine()).water, water_about(deck_database())
     yield pitch_check("rigid", light, "rigid", own)
     yield pitch_check("flexible", light, "flexible", own)
     yield pitch_check("flexible, the report's masses", heavy, "flexible", own)
@@ -116,33 +108,28 @@ def pitch_check(
     text: str, turbine: Turbine, structure: str, water: WaterAtRest, limit: float | None = None
 ) -> Check:
     """The natural frequency in pitch of a turbine in that water, at rest."""
-    here, floating = machine(), resting()
-    assert here.afloat is not None
+    here, floating = machine(), floating_of(machine())
     assert floating.burden is not None
     case = load(still(structure=structure))
-    options = turbine_options(case, turbine, here.operation, here.afloat)
+    options = turbine_options(case, turbine, here.operation, afloat_of(here))
     modes = modes_of(
-        turbine, options, water, floating.burden, floating.settled, here.afloat.database
+        turbine, options, water, floating.burden, floating.settled, afloat_of(here).database
     )
     found = next(mode.frequency for mode in modes if mode.name == "pitch")
     return Check(f"pitch, {text}", found, FREQUENCIES["pitch"], REPORT, limit, "Hz", True)
-
-
-def resting() -> Floating:
-    """The machine as it floats."""
-    afloat = machine().afloat
-    assert afloat is not None
-    assert afloat.floating is not None
-    return afloat.floating
 
 
 def heavier(turbine: Turbine) -> Turbine:
     """The turbine with the report's masses of rotor with nacelle and of the tower."""
     nacelle, tower = turbine.nacelle, turbine.tower
     assert tower.structure is not None
-    row = {row.quantity: row for row in summary(turbine)}
-    lacking = float(row["rotor_nacelle_mass"].published - row["rotor_nacelle_mass"].value)
-    factor = float(row["tower_mass"].published / row["tower_mass"].value)
+    row = {
+        row.quantity: (row.published, row.value)
+        for row in summary(turbine)
+        if row.published is not None and row.value is not None
+    }
+    lacking = row["rotor_nacelle_mass"][0] - row["rotor_nacelle_mass"][1]
+    factor = row["tower_mass"][0] / row["tower_mass"][1]
     sections = replace(tower.structure, inertia=factor * tower.structure.inertia)
     return replace(
         turbine,
@@ -161,7 +148,7 @@ def deck_database() -> HydroDatabase:
 
 def water_about(database: HydroDatabase) -> WaterAtRest:
     """Water and lines at rest with another database."""
-    here, water = machine(), resting().water
+    here, water = machine(), floating_of(machine()).water
     assert here.turbine.platform is not None
     flow = PotentialFlow(here.turbine.platform, database)
     return WaterAtRest({**water.models, "hydrodynamics": flow}, water.locked)

@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from galerna.control.interface import Controller
     from galerna.coupling.afloat import Afloat
     from galerna.coupling.flexible import FlexibleMachine
+    from galerna.coupling.floating_modes import FloatingMode
     from galerna.coupling.floating_report import FloatingReport
     from galerna.coupling.trim import Trim
     from galerna.inflow.field import WindField
@@ -77,7 +78,9 @@ class Machine:
                 yield "sea", note
             if self.report is not None:
                 yield from self.report.lines()
-                yield "frequencies", self._floating_frequencies()
+                from galerna.coupling.floating_report import modes_in_words
+
+                yield "frequencies", modes_in_words(self.floating_modes())
         for note in self.turbine.notes:
             yield "note", note
         steps = round(case.duration_s / case.time_step_s)
@@ -111,21 +114,19 @@ class Machine:
         gravity = cast("FlexibleMachine", self.simulation.structure).system.gravity
         return FloatingReport.of(floating.water, floating.burden, floating.settled, gravity)
 
-    def _floating_frequencies(self) -> str:
-        """The platform's natural frequencies where it starts."""
+    def floating_modes(self) -> list[FloatingMode]:
+        """The platform's natural modes where it floats at rest; none where nothing floats."""
         from galerna.coupling.build import turbine_options
-        from galerna.coupling.floating_report import modes_in_words, modes_of
+        from galerna.coupling.floating_report import modes_of
 
-        assert self.afloat is not None
-        floating = self.afloat.floating
-        assert floating is not None
-        assert floating.burden is not None
+        floating = None if self.afloat is None else self.afloat.floating
+        if self.afloat is None or floating is None or floating.burden is None:
+            return []
         options = turbine_options(self.case, self.turbine, self.operation, self.afloat)
-        modes = modes_of(
+        return modes_of(
             self.turbine, options, floating.water, floating.burden, floating.settled,
             self.afloat.database,
         )  # fmt: skip
-        return modes_in_words(modes)
 
     @property
     def vortex_lattice(self) -> VortexLattice | None:
